@@ -1,0 +1,3 @@
+"""voldetail: relief from one photograph, as a small procedural detail that renders on any mesh under any light."""
+
+__version__ = "0.1.0"

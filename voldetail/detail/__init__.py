@@ -1,0 +1,50 @@
+"""The detail: its parameters, declared once, its frozen record and its versioned file."""
+
+from voldetail.detail.curves import MONOTONE_CURVES, START_CURVES
+from voldetail.detail.file import detail_from_text, detail_to_text, load_detail, rounded, save_detail, schema
+from voldetail.detail.parameters import PARAMETERS, Parameter, bounds, help_text, parameter
+from voldetail.detail.record import (
+    ALLOWED_NEIGHBOURS,
+    LARGEST_SEED,
+    PAPER_NEIGHBOURS,
+    Detail,
+    NoiseFloor,
+    NoiseParameters,
+    Provenance,
+    Reflectance,
+    ReliefParameters,
+    detail_from,
+    values_of,
+    with_values,
+)
+from voldetail.detail.words import describe_in_words, summary
+
+__all__ = [
+    "ALLOWED_NEIGHBOURS",
+    "LARGEST_SEED",
+    "MONOTONE_CURVES",
+    "PAPER_NEIGHBOURS",
+    "PARAMETERS",
+    "START_CURVES",
+    "Detail",
+    "NoiseFloor",
+    "NoiseParameters",
+    "Parameter",
+    "Provenance",
+    "Reflectance",
+    "ReliefParameters",
+    "bounds",
+    "describe_in_words",
+    "detail_from",
+    "detail_from_text",
+    "detail_to_text",
+    "help_text",
+    "load_detail",
+    "parameter",
+    "rounded",
+    "save_detail",
+    "schema",
+    "summary",
+    "values_of",
+    "with_values",
+]

@@ -1,0 +1,161 @@
+"""The detail file: versioned JSON that people can read and edit."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from voldetail.detail.parameters import PARAMETERS, parameter
+from voldetail.detail.reading import read_small_text
+from voldetail.detail.record import DETAIL_VERSION, Detail, NoiseParameters, Reflectance, ReliefParameters
+from voldetail.detail.refusal import printable, refusal, shown
+from voldetail.errors import InputError
+from voldetail.files import write_text
+
+FORMAT = "voldetail.detail"
+SIGNIFICANT_DIGITS = 7  # a float32 has seven: the noise and the renderer work in float32
+_GROUPS = tuple(dict.fromkeys(p.key.split(".")[0] for p in PARAMETERS))
+
+Migration = Callable[[dict[str, Any]], dict[str, Any]]
+MIGRATIONS: dict[int, Migration] = {}
+"""Entry n brings the parsed file of version n to version n + 1; version 1 is the first: none yet."""
+
+
+def load_detail(path: Path | str) -> Detail:
+    """The detail in the JSON file at `path`; older versions are migrated.
+
+    Raises InputError if the file is missing, too large, not JSON or of a newer version, or if it has
+    an unknown key, a missing parameter or a value out of range.
+    """
+    path = Path(path)
+    return detail_from_text(read_small_text(path, "detail file"), where=printable(str(path)))
+
+
+def save_detail(path: Path | str, detail: Detail) -> None:
+    """Write `detail` as JSON, numbers to 7 significant digits; the file appears whole or not at all."""
+    write_text(Path(path), detail_to_text(detail))
+
+
+def detail_to_text(detail: Detail) -> str:
+    """The text of the detail file; raises InputError if `provenance.settings` holds what JSON cannot."""
+    data = {"format": FORMAT, **detail.model_dump(mode="json")}
+    try:
+        text = json.dumps(_rounded(data), indent=2, ensure_ascii=False, allow_nan=False)
+    except ValueError:
+        raise InputError("provenance.settings holds a number that is not finite; leave it out.") from None
+    # Lists of numbers on one line each. A string cannot match: JSON writes its line breaks as \n.
+    numbers = re.compile(r'\[\n\s*([^\[\]{}"]*?)\n\s*\]')
+    return numbers.sub(lambda m: "[" + re.sub(r",\n\s*", ", ", m.group(1)) + "]", text) + "\n"
+
+
+def rounded(detail: Detail) -> Detail:
+    """`detail` as a file will hold it: a fit that ends with this one can be replayed exactly."""
+    return detail_from_text(detail_to_text(detail), where="The detail")
+
+
+def detail_from_text(text: str, where: str = "The detail") -> Detail:
+    """The detail in the JSON `text`; errors (InputError) start with `where`."""
+    data = _parsed(text, where)
+    if data.get("format") != FORMAT:
+        found = shown(data.get("format"))
+        raise InputError(f'{where} is not a detail file: its "format" is {found}, not "{FORMAT}".')
+    data = _migrated(data, where)
+    del data["format"]
+    _refuse_missing(data, where)
+    try:
+        # Through JSON again, since only there "strict" takes a list for a tuple and still refuses "3" for 3.
+        return Detail.model_validate_json(json.dumps(data), strict=True)
+    except ValidationError as error:
+        raise InputError(refusal(error, Detail, where) + ".") from None
+    except (ValueError, RecursionError):
+        raise InputError(f"{where} holds a value that is too large or too deeply nested.") from None
+
+
+def _refuse_missing(data: dict[str, Any], where: str) -> None:
+    """Refuse a file that leaves a parameter out: the record's defaults are for Python callers."""
+    for group in _GROUPS:
+        names = [p.key.split(".")[1] for p in PARAMETERS if p.key.startswith(group + ".")]
+        if group not in data:
+            raise InputError(f"{where}: {group} is missing; a detail file has {', '.join(_GROUPS)}.")
+        given = data[group]
+        if not isinstance(given, dict) or set(given) - set(names):
+            continue  # of the wrong kind, or with a misspelt key: the record's own refusal tells more
+        for name in names:
+            if name not in given:
+                allowed = parameter(f"{group}.{name}").allowed
+                raise InputError(f"{where}: {group}.{name} is missing; allowed: {allowed}.")
+
+
+def schema() -> dict[str, Any]:
+    """The JSON schema of the detail file, with a sentence and a unit for each parameter."""
+    made = Detail.model_json_schema(mode="serialization")
+    form = {"const": FORMAT, "type": "string", "description": "Tells that this is a detail file."}
+    made["properties"] = {"format": form, **made["properties"]}
+    made["required"] = ["format", "version", *_GROUPS]
+    for record in (NoiseParameters, ReliefParameters, Reflectance):  # defaults are for Python, not for files
+        made["$defs"][record.__name__]["required"] = list(record.model_fields)
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **made}
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        return float(f"{value:.{SIGNIFICANT_DIGITS}g}")
+    if isinstance(value, dict):
+        return {k: _rounded(v) for k, v in value.items()}
+    if isinstance(value, list):
+        return [_rounded(v) for v in value]
+    return value
+
+
+def _parsed(text: str, where: str) -> dict[str, Any]:
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        table: dict[str, Any] = {}
+        for key, value in pairs:
+            if key in table:
+                raise InputError(f"{where} has the key {shown(key)} twice; leave one.")
+            table[key] = value
+        return table
+
+    def finite(number: str) -> float:
+        value = float(number)
+        if not math.isfinite(value):
+            raise InputError(f"{where} holds {shown(number)}, which is not a finite number.")
+        return value
+
+    try:
+        data = json.loads(text, object_pairs_hook=once, parse_float=finite, parse_constant=finite)
+    except json.JSONDecodeError as error:
+        at = f"line {error.lineno}, column {error.colno}"
+        raise InputError(f"{where} is not valid JSON: {error.msg} in {at}.") from None
+    except (ValueError, RecursionError):
+        raise InputError(f"{where} holds a value that is too large or too deeply nested.") from None
+    if not isinstance(data, dict):
+        raise InputError(f"{where} is not a detail file: it holds {shown(data)} and not a table.")
+    return data
+
+
+def _migrated(data: dict[str, Any], where: str) -> dict[str, Any]:
+    version = data.get("version")
+    if not isinstance(version, int) or isinstance(version, bool):
+        raise InputError(
+            f'{where} has no usable "version": {shown(version)}; allowed: 1 to {DETAIL_VERSION}.'
+        )
+    if version > DETAIL_VERSION:
+        raise InputError(
+            f"{where} has version {shown(version)}, made by a newer voldetail: update"
+            f" (this one reads up to version {DETAIL_VERSION})."
+        )
+    for step in range(version, DETAIL_VERSION):
+        if step not in MIGRATIONS:
+            raise InputError(
+                f"{where} has version {shown(version)}, which this voldetail cannot read;"
+                f" it reads {min([*MIGRATIONS, DETAIL_VERSION])} to {DETAIL_VERSION}."
+            )
+        data = {**MIGRATIONS[step](data), "version": step + 1}
+    return {**data, "format": FORMAT}

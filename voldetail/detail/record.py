@@ -1,0 +1,187 @@
+"""The frozen record of a detail: what a fit finds, and all that a rendering of it needs besides a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    JsonValue,
+    ValidationError,
+    field_validator,
+    model_validator,
+)
+
+from voldetail.detail.parameters import PARAMETERS, declared, limits, parameter
+from voldetail.detail.refusal import refusal
+from voldetail.errors import InputError
+
+DETAIL_VERSION: Literal[1] = 1
+LARGEST_SEED = 2**32 - 1  # the lattice hash takes 32-bit words
+
+PAPER_NEIGHBOURS: tuple[tuple[int, int], ...] = ((1, 50), (1, 2), (2, 2), (2, 3))  # GD10 section 7
+ALLOWED_NEIGHBOURS: tuple[tuple[int, int], ...] = ((1, 1), (1, 2), (1, 3), (2, 2), (2, 3), (3, 3), (1, 50))
+
+LUMINANCE_WEIGHTS = (0.2126, 0.7152, 0.0722)  # ITU-R BT.709-6, item 3.2
+TINT_TOLERANCE = 1e-3  # rounding in a file is 1e-7; a tint typed with four digits still passes
+
+Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
+
+
+class Record(BaseModel):
+    """Base of the records: frozen, no unknown keys, finite numbers only."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class NoiseParameters(Record):
+    """The cellular-Gabor noise, GD10 equations 2 and 3."""
+
+    domain: Literal["solid", "surface"] = declared("noise.domain")
+    first_neighbour: int = declared("noise.first_neighbour")
+    last_neighbour: int = declared("noise.last_neighbour")
+    envelope: Literal["exponential", "gaussian"] = declared("noise.envelope")
+    octaves: int = declared("noise.octaves")
+    lacunarity: float = declared("noise.lacunarity")
+    stripe_frequency: float = declared("noise.stripe_frequency")
+    stripe_spread: float = declared("noise.stripe_spread")
+    scale: float = declared("noise.scale")
+    anisotropy: float = declared("noise.anisotropy")
+    angle: float = declared("noise.angle")
+    curve: tuple[Annotated[float, limits("noise.curve")], ...] = declared("noise.curve")
+
+    @model_validator(mode="after")
+    def _neighbours(self) -> NoiseParameters:
+        pair = (self.first_neighbour, self.last_neighbour)
+        if pair not in ALLOWED_NEIGHBOURS:
+            known = ", ".join(f"{k} and {k2}" for k, k2 in ALLOWED_NEIGHBOURS)
+            raise ValueError(
+                f"the neighbours {pair[0]} (first) and {pair[1]} (last) are not allowed; use {known}"
+            )
+        return self
+
+
+class ReliefParameters(Record):
+    """The displacement P' = P + A_d R(P) N_P, GD10 section 6."""
+
+    amplitude: float = declared("relief.amplitude")
+
+
+class Reflectance(Record):
+    """The ambient, diffuse and Phong specular coefficients, GD10 section 6."""
+
+    ambient: float = declared("reflectance.ambient")
+    diffuse: float = declared("reflectance.diffuse")
+    specular: float = declared("reflectance.specular")
+    shininess: float = declared("reflectance.shininess")
+    tint: tuple[Annotated[float, limits("reflectance.tint")], ...] = declared("reflectance.tint")
+
+    @field_validator("tint")
+    @classmethod
+    def _luminance_one(cls, tint: tuple[float, ...]) -> tuple[float, ...]:
+        luminance = sum(w * c for w, c in zip(LUMINANCE_WEIGHTS, tint, strict=False))
+        if abs(luminance - 1) > TINT_TOLERANCE:
+            raise ValueError(
+                f"the tint's Rec. 709 luminance is {luminance:.4g} where it has to be 1:"
+                " divide the three numbers by it"
+            )
+        return tint
+
+
+class Provenance(Record):
+    """Where a detail came from: inputs, versions, settings and what the fit reached."""
+
+    voldetail: str = Field(description="The version of voldetail that made the detail.")
+    created: str = Field(description="When it was made, an ISO 8601 date or date and time.")
+    photo: str = Field(description="The file name of the photo, without its folder.")
+    photo_sha256: Sha256 | None = Field(default=None, description="The SHA-256 of the photo file.")
+    mask_sha256: Sha256 | None = Field(
+        default=None, description="The SHA-256 of the mask file, if there was one."
+    )
+    zone: tuple[int, int, int, int] | None = Field(
+        default=None,
+        description="The part of the photo used: x, y, width, height in pixels; null for all of it.",
+        json_schema_extra={"allowed": "four whole numbers x, y, width, height", "unit": "pixels"},
+    )
+    resolution: int = Field(ge=1, description="The longest side of the zone when it was fitted, in pixels.")
+    light: str = Field(description="The light of the photo, as it is written on the command line.")
+    proxy: str = Field(description="The kind of proxy shape.")
+    solver: str = Field(description="The solver that searched.")
+    metric: str = Field(description="The metric that was minimised.")
+    evaluations: int = Field(ge=0, description="How many pictures were rendered and compared.")
+    seconds: float = Field(ge=0, description="How long the fit took, in seconds.")
+    distance: float = Field(
+        ge=0, description="The metric M between photo and rendering at the end of the fit."
+    )
+    mitsuba: str = Field(description="The version of Mitsuba.")
+    drjit: str = Field(description="The version of Dr.Jit.")
+    numpy: str = Field(description="The version of NumPy.")
+    settings: dict[str, JsonValue] = Field(default_factory=dict, description="The other settings of the fit.")
+
+    @field_validator("created")
+    @classmethod
+    def _iso(cls, created: str) -> str:
+        try:
+            datetime.fromisoformat(created)
+        except ValueError:
+            raise ValueError(f"{created!r:.60} is not an ISO 8601 date such as 2024-05-31") from None
+        return created
+
+
+class NoiseFloor(Record):
+    """How small a distance can get by chance: the measure that M has to be held against."""
+
+    other_seed: float | None = Field(
+        default=None, ge=0, description="M between two renderings of this detail with different seeds."
+    )
+    photo_halves: float | None = Field(default=None, ge=0, description="M between two halves of the photo.")
+
+
+class Detail(Record):
+    """A procedural detail: noise, relief and reflectance, with where they came from."""
+
+    version: Literal[1] = Field(default=DETAIL_VERSION, description="The version of the file format.")
+    name: str = Field(default="detail", min_length=1, max_length=200, description="A name for people.")
+    seed: int = Field(default=0, ge=0, le=LARGEST_SEED, description="The seed of the feature points.")
+    noise: NoiseParameters = Field(default_factory=NoiseParameters, description="The noise.")
+    relief: ReliefParameters = Field(default_factory=ReliefParameters, description="The displacement.")
+    reflectance: Reflectance = Field(
+        default_factory=Reflectance, description="How the surface reflects light."
+    )
+    provenance: Provenance | None = Field(default=None, description="Where the detail came from.")
+    noise_floor: NoiseFloor = Field(
+        default_factory=NoiseFloor, description="Distances that chance alone gives."
+    )
+
+
+def values_of(detail: Detail) -> dict[str, Any]:
+    """The detail's parameters by key ("noise.scale" and so on), in the order of their declaration."""
+    found: dict[str, Any] = {}
+    for declaration in PARAMETERS:
+        group, name = declaration.key.split(".")
+        found[declaration.key] = getattr(getattr(detail, group), name)
+    return found
+
+
+def with_values(detail: Detail, values: Mapping[str, Any]) -> Detail:
+    """A copy of `detail` with the parameters in `values` (by key) replaced and everything checked again.
+
+    Raises InputError for an unknown key or a value that is not allowed.
+    """
+    data = detail.model_dump()
+    for key, value in values.items():
+        group, name = parameter(key).key.split(".")
+        data[group][name] = value
+    return detail_from(data)
+
+
+def detail_from(data: Mapping[str, Any], where: str = "The detail") -> Detail:
+    """A Detail from nested dictionaries; errors (InputError) start with `where`."""
+    try:
+        return Detail.model_validate(dict(data))
+    except ValidationError as error:
+        raise InputError(refusal(error, Detail, where) + ".") from None

@@ -1,0 +1,51 @@
+"""A detail in words and units, for people."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from voldetail.detail.parameters import PARAMETERS, Parameter
+from voldetail.detail.record import Detail, values_of
+
+_GLOSSY = (
+    0.05  # Ks above which a highlight is worth mentioning: 5 % of the beam, about a dielectric's reflectance
+)
+_STRETCHED = 1.1  # a ratio below this cannot be told from round cells by eye
+
+
+def describe_in_words(detail: Detail) -> list[tuple[str, str, str, str]]:
+    """Label, value, unit and sentence of each parameter, all as text, in the order of their declaration.
+
+    Angles, radians in the file, are given in degrees.
+    """
+    values = values_of(detail)
+    return [(p.label, *_value(p, values[p.key]), p.sentence) for p in PARAMETERS]
+
+
+def summary(detail: Detail) -> str:
+    """One sentence that says what the detail is like."""
+    noise = detail.noise
+    octaves = "1 octave" if noise.octaves == 1 else f"{noise.octaves} octaves"
+    parts = [f"{octaves} of {noise.domain} noise with cells about {1 / noise.scale:.2g} scene units across"]
+    stretch = max(noise.anisotropy, 1 / noise.anisotropy)
+    if stretch >= _STRETCHED:
+        # Denser along x means longer across it.
+        along = noise.angle + (math.pi / 2 if noise.anisotropy > 1 else 0.0)
+        parts.append(f"stretched {stretch:.2g} times along {math.degrees(along) % 180:.0f} degrees")
+    if noise.stripe_frequency > 0:
+        parts.append(f"striped {noise.stripe_frequency:.2g} times a cell")
+    parts.append(f"raised by up to {detail.relief.amplitude:.2g} scene units")
+    glossy = detail.reflectance.specular > _GLOSSY
+    parts.append(f"glossy (shininess {detail.reflectance.shininess:.2g})" if glossy else "matte")
+    return ", ".join(parts) + "."
+
+
+def _value(declaration: Parameter, value: Any) -> tuple[str, str]:
+    if isinstance(value, tuple):
+        return " ".join(f"{v:.3g}" for v in value), declaration.unit
+    if declaration.unit == "rad":
+        return f"{math.degrees(value):.1f}", "degrees"
+    if isinstance(value, float):
+        return f"{value:.4g}", declaration.unit
+    return str(value), declaration.unit

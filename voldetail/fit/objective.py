@@ -1,0 +1,70 @@
+"""One evaluation: displace, look, solve the reflectance, compare."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voldetail.detail import Detail
+from voldetail.detail.record import Reflectance
+from voldetail.errors import InputError
+from voldetail.fit.reflectance import solve
+from voldetail.fit.target import Target
+from voldetail.metric import Descriptor, describe, distance
+from voldetail.render import SHININESS, components
+from voldetail.scene.heightfield import HeightField
+from voldetail.scene.surface import MeshSurface
+
+UNUSABLE = 1e3
+"""Distance of a picture that cannot be compared (the surface left the mask): far, but a number for the search."""
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """A detail with its solved reflectance, its distance from the photo and its picture (linear luminance)."""
+
+    detail: Detail
+    distance: float
+    picture: NDArray[np.float32]
+    mask: NDArray[np.bool_]
+
+
+class Objective:
+    """Compares details with a Target on one surface; counts its evaluations."""
+
+    def __init__(self, target: Target, surface: HeightField | MeshSurface, *, specular: bool, subsamples: int = 2) -> None:
+        self.target, self.surface = target, surface
+        self.specular, self.subsamples = specular, subsamples
+        self.evaluations = 0
+
+    def evaluate(self, detail: Detail, seed: int | None = None) -> Evaluation:
+        """Return the Evaluation of ``detail``, under another noise ``seed`` if given."""
+        self.evaluations += 1
+        if seed is not None:
+            detail = detail.model_copy(update={"seed": seed})
+        self.surface.update(detail)
+        parts = components(self.surface, self.target.lamp, subsamples=self.subsamples, shininess=SHININESS)
+        mask = self.target.mask & (parts.covered > 0.999)
+        if not mask.any():
+            return Evaluation(detail, UNUSABLE, np.zeros_like(self.target.luminance), mask)
+        found = solve(self.target.luminance, parts, mask, specular=self.specular)
+        picture = parts.luminance(found.ambient, found.diffuse, found.specular, found.shininess)
+        detail = detail.model_copy(
+            update={
+                "reflectance": Reflectance(
+                    ambient=found.ambient, diffuse=found.diffuse, specular=found.specular,
+                    shininess=found.shininess, tint=self.target.tint,
+                )
+            }
+        )
+        try:
+            value = distance(self.target.descriptor, self.describe(picture, mask))
+        except InputError:
+            value = UNUSABLE
+        return Evaluation(detail, value, picture, mask)
+
+    def describe(self, picture: NDArray[np.float32], mask: NDArray[np.bool_]) -> Descriptor:
+        """Return the descriptor of a picture, like the photo's."""
+        return describe(picture, None if mask.all() else mask, like=self.target.descriptor)

@@ -1,0 +1,143 @@
+"""The space that is searched: a few choices, and numbers in a box.
+
+A Kind holds what is discrete. The numbers of a Kind are mapped to [0, 1] each, on the scale that the parameter's
+declaration names, so a solver needs to know nothing about details.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voldetail.detail import Detail, bounds, parameter
+from voldetail.detail.parameters import CURVE_POINTS
+from voldetail.detail.record import NoiseParameters, ReliefParameters
+
+Vector = NDArray[np.float64]
+
+SHAPE_COUNT = 4
+SHAPE_RANGE = 2.5
+"""Range of the numbers that shape H: exp(2.5) = 12 between the steepest and the flattest part by each."""
+
+FOLDS = ("none", "ridge", "billow")
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What is discrete: ranks of feature points, envelope, octaves, whether there are stripes, and how H is folded.
+
+    fold: "none" keeps H monotone; "ridge" is 1 - |2H - 1| of a monotone H, "billow" |2H - 1|.
+    """
+
+    first: int
+    last: int
+    envelope: str
+    octaves: int
+    striped: bool
+    fold: str = "none"
+
+
+@dataclass(frozen=True)
+class Space:
+    """Bounds of the numbers for a photo, and the mapping to details.
+
+    domain: of the noise. scale: bounds of the cells per scene unit that the picture can show. amplitude: bounds, equal
+    where the user gave it. anisotropy: bounds.
+    """
+
+    domain: str
+    scale: tuple[float, float]
+    amplitude: tuple[float, float]
+    anisotropy: tuple[float, float] = (0.2, 5.0)
+    stripes: tuple[float, float] = (0.4, 4.0)
+
+    def names(self, kind: Kind) -> list[str]:
+        """Return the names of the numbers of ``kind``, in order."""
+        out = ["noise.scale", "noise.anisotropy", "noise.angle"]
+        if self.amplitude[0] < self.amplitude[1]:
+            out.append("relief.amplitude")
+        if kind.octaves > 1:
+            out.append("noise.lacunarity")
+        if kind.striped:
+            out += ["noise.stripe_frequency", "noise.stripe_spread"]
+        return out + [f"shape.{i}" for i in range(SHAPE_COUNT)]
+
+    def range_of(self, name: str) -> tuple[float, float, bool]:
+        """Return (lower, upper, logarithmic) of a number."""
+        if name.startswith("shape."):
+            return -SHAPE_RANGE, SHAPE_RANGE, False
+        own = {
+            "noise.scale": self.scale, "relief.amplitude": self.amplitude, "noise.anisotropy": self.anisotropy,
+            "noise.stripe_frequency": self.stripes,
+        }.get(name)
+        low, high = own or bounds(name)
+        # Amplitude spans two decades here, so its search is logarithmic though its declaration is linear.
+        return low, high, parameter(name).scale == "log" or name in ("relief.amplitude", "noise.stripe_frequency")
+
+    def decode(self, kind: Kind, vector: Vector) -> Detail:
+        """Return the Detail at ``vector`` (each number in [0, 1]; angles wrap, the rest is clipped)."""
+        values: dict[str, float] = {}
+        for name, unit in zip(self.names(kind), vector, strict=True):
+            low, high, log = self.range_of(name)
+            unit = unit % 1.0 if name == "noise.angle" else min(max(float(unit), 0.0), 1.0)
+            values[name] = low * (high / low) ** unit if log else low + unit * (high - low)
+        shape = np.array([values[f"shape.{i}"] for i in range(SHAPE_COUNT)])
+        noise = NoiseParameters(
+            domain=self.domain, first_neighbour=kind.first, last_neighbour=kind.last, envelope=kind.envelope,  # type: ignore[arg-type]
+            octaves=kind.octaves, lacunarity=values.get("noise.lacunarity", parameter("noise.lacunarity").default),
+            stripe_frequency=values.get("noise.stripe_frequency", 0.0),
+            stripe_spread=values.get("noise.stripe_spread", 0.0),
+            scale=values["noise.scale"], anisotropy=values["noise.anisotropy"], angle=values["noise.angle"],
+            curve=tuple(float(v) for v in fold(profile(shape), kind.fold)),
+        )
+        amplitude = values.get("relief.amplitude", self.amplitude[0])
+        return Detail(noise=noise, relief=ReliefParameters(amplitude=amplitude))
+
+    def encode(self, kind: Kind, values: dict[str, float]) -> Vector:
+        """Return the vector with the given numbers; those that are missing are in the middle."""
+        out = []
+        for name in self.names(kind):
+            low, high, log = self.range_of(name)
+            if name not in values:
+                out.append(0.5)
+                continue
+            value = min(max(values[name], low), high)
+            out.append(math.log(value / low) / math.log(high / low) if log else (value - low) / (high - low))
+        return np.array(out)
+
+
+def profile(shape: Vector) -> Vector:
+    """Return a rising H from 0 to 1 through its control points.
+
+    Its increments are exp(sum_j shape_j cos(pi j (i + 1/2) / 10)): zeros give a straight line, the first number bends
+    it, the second makes it steep in the middle or at the ends, and so on. Four numbers instead of eleven, and always
+    monotone.
+    """
+    intervals = CURVE_POINTS - 1
+    position = (np.arange(intervals) + 0.5) / intervals
+    exponent = sum(c * np.cos(math.pi * (j + 1) * position) for j, c in enumerate(shape))
+    steps = np.exp(exponent)
+    out = np.concatenate([[0.0], np.cumsum(steps)])
+    return np.asarray(np.clip(out / out[-1], 0.0, 1.0))
+
+
+def shape_of(curve: tuple[float, ...]) -> Vector:
+    """Return the numbers whose `profile` is nearest to a rising ``curve`` (least squares on log increments)."""
+    intervals = CURVE_POINTS - 1
+    steps = np.maximum(np.diff(np.asarray(curve)), 0.01)
+    position = (np.arange(intervals) + 0.5) / intervals
+    # The basis is orthogonal on these midpoints, so each number is a projection.
+    logs = np.log(steps)
+    found = [2.0 * np.mean(logs * np.cos(math.pi * (j + 1) * position)) for j in range(SHAPE_COUNT)]
+    return np.clip(np.array(found), -SHAPE_RANGE, SHAPE_RANGE)
+
+
+def fold(curve: Vector, how: str) -> Vector:
+    """Return ``curve`` folded at its middle height."""
+    if how == "none":
+        return curve
+    bent = np.abs(2.0 * curve - 1.0)
+    return 1.0 - bent if how == "ridge" else bent

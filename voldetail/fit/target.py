@@ -1,0 +1,118 @@
+"""The photo as the fit sees it: the zone at working resolution, its mask, light, colour and descriptor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voldetail.errors import InputError
+from voldetail.image import Photo, load_mask, load_photo, luminance, resize
+from voldetail.metric import Descriptor, describe, distance
+from voldetail.scene.lamp import Lamp, lamp_of
+from voldetail.scene.setup import SKIMAGE_PREFIX, Setup
+from voldetail.scene.view import Zone
+
+DEFAULT_ZONE = 2
+"""The default zone is at most this many times the working resolution across: enough repetitions of the texture, and at
+most this much of its finest detail lost by resampling."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """What a rendering is compared with.
+
+    pixels (H, W, 3) and luminance (H, W): the zone, linear, at working resolution. mask (H, W). shape: rows and columns
+    of the whole photo; zone in its pixels. photo_halves: distance between the two halves of the zone.
+    """
+
+    photo: Photo
+    pixels: NDArray[np.float32]
+    luminance: NDArray[np.float32]
+    mask: NDArray[np.bool_]
+    shape: tuple[int, int]
+    zone: Zone
+    lamp: Lamp
+    tint: tuple[float, float, float]
+    descriptor: Descriptor
+    photo_halves: float | None
+
+    def reduced(self, metric: str) -> Target:
+        """Return the same target at half the resolution, for the coarse pass."""
+        rows, columns = self.mask.shape
+        size = (max(32, rows // 2), max(32, columns // 2))
+        pixels = resize(self.pixels, size)
+        share = resize(np.repeat(self.mask[..., None].astype(np.float32), 3, axis=2), size)[..., 0]
+        light = luminance(pixels)
+        mask = share > 0.999
+        return Target(
+            self.photo, pixels, light, mask, self.shape, self.zone, self.lamp, self.tint,
+            describe(light, mask, metric=metric), None,
+        )
+
+
+def load_photo_of(setup: Setup) -> Photo:
+    """Return the photo of a Setup: a file, or one that scikit-image ships."""
+    path = setup.photo.path
+    if path.startswith(SKIMAGE_PREFIX):
+        import skimage
+
+        name = path.removeprefix(SKIMAGE_PREFIX)
+        return load_photo(Path(skimage.__file__).parent / "data" / f"{name}.png", encoding=setup.photo.encoding)
+    return load_photo(path, encoding=setup.photo.encoding)
+
+
+def make_target(setup: Setup, photo: Photo | None = None) -> Target:
+    """Return the Target of a Setup.
+
+    Raises InputError for a photo, mask or zone that cannot be used.
+    """
+    photo = photo or load_photo_of(setup)
+    rows, columns = photo.pixels.shape[:2]
+    mask = load_mask(setup.mask, (rows, columns)) if setup.mask else np.ones((rows, columns), dtype=bool)
+    zone = setup.photo.zone or default_zone(mask, setup.photo.resolution)
+    x, y, w, h = zone
+    if x + w > columns or y + h > rows:
+        raise InputError(
+            f"The zone {x},{y},{w},{h} reaches outside the photo of {columns} x {rows} pixels:"
+            " x + width and y + height must stay within it."
+        )
+    factor = setup.photo.resolution / max(w, h)
+    size = (max(1, round(h * factor)), max(1, round(w * factor)))
+    pixels = resize(photo.pixels[y : y + h, x : x + w], size)
+    inside = mask[y : y + h, x : x + w]
+    share = resize(np.repeat(inside[..., None].astype(np.float32), 3, axis=2), size)[..., 0]
+    used = share > 0.999
+    if not used.any():
+        raise InputError("The mask leaves nothing of the zone to compare: use a larger mask or another --zone.")
+    light = luminance(pixels)
+    mean = pixels[used].mean(axis=0).astype(np.float64)
+    tint = mean / max(float(luminance(mean[None, None, :].astype(np.float32))[0, 0]), 1e-6)
+    descriptor = describe(light, used, metric=setup.fit.metric)
+    return Target(
+        photo=photo, pixels=pixels, luminance=light, mask=used, shape=(rows, columns), zone=zone,
+        lamp=lamp_of(setup.light, luminance(photo.pixels)), tint=(float(tint[0]), float(tint[1]), float(tint[2])),
+        descriptor=descriptor, photo_halves=_halves(light, used, setup.fit.metric),
+    )
+
+
+def default_zone(mask: NDArray[np.bool_], resolution: int) -> Zone:
+    """Return a square of at most DEFAULT_ZONE resolutions across, in the middle of the mask's bounding box."""
+    rows, columns = np.any(mask, axis=1), np.any(mask, axis=0)
+    top, bottom = int(np.argmax(rows)), len(rows) - int(np.argmax(rows[::-1]))
+    left, right = int(np.argmax(columns)), len(columns) - int(np.argmax(columns[::-1]))
+    side = min(bottom - top, right - left, DEFAULT_ZONE * resolution)
+    return (left + right - side) // 2, (top + bottom - side) // 2, side, side
+
+
+def _halves(light: NDArray[np.float32], mask: NDArray[np.bool_], metric: str) -> float | None:
+    """Return the distance between the left and the right half, described like the left; None where one is too small."""
+    half = light.shape[1] // 2
+    try:
+        left = describe(np.ascontiguousarray(light[:, :half]), np.ascontiguousarray(mask[:, :half]), metric=metric)
+        right = describe(np.ascontiguousarray(light[:, -half:]), np.ascontiguousarray(mask[:, -half:]), like=left)
+    except InputError:
+        return None
+    return distance(left, right)

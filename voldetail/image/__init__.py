@@ -1,0 +1,28 @@
+"""Pictures: read, saved, resampled; linear float32 inside, sRGB only here."""
+
+from voldetail.image.load import MIN_SIDE, Photo, load_photo
+from voldetail.image.mask import load_mask
+from voldetail.image.pyramid import gaussian_pyramid, masked_pyramid
+from voldetail.image.resize import resize
+from voldetail.image.samples import MAX_PIXELS
+from voldetail.image.save import check_suffix, save_exr, save_image, save_jpeg, save_png
+from voldetail.image.srgb import luminance, to_linear, to_srgb
+
+__all__ = [
+    "MAX_PIXELS",
+    "MIN_SIDE",
+    "Photo",
+    "check_suffix",
+    "gaussian_pyramid",
+    "load_mask",
+    "load_photo",
+    "luminance",
+    "masked_pyramid",
+    "resize",
+    "save_exr",
+    "save_image",
+    "save_jpeg",
+    "save_png",
+    "to_linear",
+    "to_srgb",
+]

@@ -1,0 +1,20 @@
+"""Cellular-Gabor noise (GD10 eq. 2 and 3) on any Dr.Jit array type; nothing here imports Mitsuba."""
+
+from voldetail.noise.curve import evaluate_curve
+from voldetail.noise.gabor import relief_function
+from voldetail.noise.lattice import cell_hash, feature_point, nearest_points, search_table
+from voldetail.noise.moments import moments
+from voldetail.noise.octave import KERNEL_RADIUS, NoiseSettings, single_octave
+
+__all__ = [
+    "KERNEL_RADIUS",
+    "NoiseSettings",
+    "cell_hash",
+    "evaluate_curve",
+    "feature_point",
+    "moments",
+    "nearest_points",
+    "relief_function",
+    "search_table",
+    "single_octave",
+]

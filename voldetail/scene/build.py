@@ -1,0 +1,59 @@
+"""From a Setup and a photo's size to a surface that can be looked at; the only place that chooses the way."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from voldetail.detail import Detail
+from voldetail.scene.heightfield import HeightField
+from voldetail.scene.proxy import make_proxy
+from voldetail.scene.setup import ProxySetup, Setup
+from voldetail.scene.surface import MeshSurface
+from voldetail.scene.view import View, Zone, view_of
+
+FLAT_MARGIN = 16
+"""Pixels by which the mesh of a flat proxy is larger than the window, so that relief outside casts its shadows in."""
+
+
+class Surface(Protocol):
+    """What `render` needs of a scene."""
+
+    view: View
+
+    def update(self, detail: Detail) -> None: ...
+    def look(self, subsamples: int) -> tuple[object, object, object, object]: ...
+    def lit(self, points: object, normals: object, direction: object, distance: object) -> object: ...
+
+
+def build(setup: Setup, photo_shape: tuple[int, int], zone: Zone | None, *, fast: bool = True) -> HeightField | MeshSurface:
+    """Return the surface of ``setup`` seen through ``zone`` of a photo of ``photo_shape`` (rows, columns).
+
+    A plane that faces an orthographic camera becomes a HeightField when ``fast``; all else a MeshSurface in Mitsuba.
+    """
+    view = view_of(setup.camera, photo_shape, zone, setup.photo.resolution)
+    if faces_camera(setup):
+        if fast:
+            return HeightField(view, setup.proxy.position[2])
+        return MeshSurface(make_proxy(_covering(view, setup), view.pixel, setup.domain), view, one_sided_sky=True)
+    return MeshSurface(
+        make_proxy(setup.proxy, view.pixel, setup.domain), view, one_sided_sky=setup.proxy.kind == "plane"
+    )
+
+
+def faces_camera(setup: Setup) -> bool:
+    """Whether the proxy is a plane seen head-on without perspective, which fills the view."""
+    proxy = setup.proxy
+    return (
+        proxy.kind == "plane" and setup.camera.kind == "orthographic" and proxy.size is None
+        and all(angle == 0 for angle in proxy.rotation)
+    )
+
+
+def _covering(view: View, setup: Setup) -> ProxySetup:
+    """Return a plane that covers the view and its margin, at the proxy's depth."""
+    margin = FLAT_MARGIN * view.pixel
+    return ProxySetup(
+        kind="plane",
+        size=(view.right - view.left + 2 * margin, view.top - view.bottom + 2 * margin, 0.0),
+        position=((view.left + view.right) / 2, (view.top + view.bottom) / 2, setup.proxy.position[2]),
+    )

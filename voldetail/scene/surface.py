@@ -1,0 +1,113 @@
+"""Any proxy as a Mitsuba scene of one displaced mesh: the general way to see a relief."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from voldetail.backend import mitsuba
+from voldetail.detail import Detail
+from voldetail.scene.proxy import Proxy
+from voldetail.scene.relief import relief_at
+from voldetail.scene.view import View
+
+SKY_RAYS = 64
+"""Directions in which the sky is looked for, the same for every point: smooth shading without grain."""
+
+GOLDEN_ANGLE = math.pi * (3.0 - math.sqrt(5.0))
+SHAPE = "detail"
+
+
+class MeshSurface:
+    """A proxy displaced along its normals, P' = P + A_d R(P) N_P (GD10 section 6), traced by Mitsuba.
+
+    The scene is loaded once; `update` moves the vertices, and Mitsuba makes the vertex normals anew.
+    """
+
+    def __init__(
+        self, proxy: Proxy, view: View, *, scale: float = 1.0, one_sided_sky: bool = False,
+        bsdf: dict[str, Any] | None = None, emitters: dict[str, Any] | None = None,
+    ) -> None:
+        mi = mitsuba()
+        self.proxy, self.view, self.scale, self.one_sided_sky = proxy, view, scale, one_sided_sky
+        self._positions = mi.Point3f(np.ascontiguousarray(proxy.positions.T))
+        self._normals = mi.Vector3f(np.ascontiguousarray(proxy.normals.T))
+        self._domain = tuple(mi.Float(np.ascontiguousarray(proxy.domain[:, axis])) for axis in range(3))
+        properties = mi.Properties()
+        if bsdf is not None:
+            properties["bsdf"] = mi.load_dict(bsdf)
+        mesh = mi.Mesh(SHAPE, len(proxy.positions), len(proxy.faces), has_vertex_normals=False, props=properties)
+        parameters = mi.traverse(mesh)
+        parameters["vertex_positions"] = mi.Float(proxy.positions.ravel())
+        parameters["faces"] = mi.UInt32(proxy.faces.ravel())
+        parameters.update()
+        self.scene = mi.load_dict({"type": "scene", SHAPE: mesh, **(emitters or {})})
+        self._parameters = mi.traverse(self.scene)
+        self.towards_viewer: Any = mi.Vector3f(0.0, 0.0, 1.0)
+        self._key = next(k for k in self._parameters.keys() if k.endswith("vertex_positions"))
+
+    def update(self, detail: Detail) -> None:
+        """Displace the mesh by the relief of ``detail``."""
+        mi = mitsuba()
+        relief = relief_at(detail, self._domain, self.scale)
+        height = relief * dr.opaque(mi.Float, detail.relief.amplitude * self.scale)
+        positions = dr.ravel(self._positions + height * self._normals)
+        # Left unevaluated, the noise would be computed again by each consumer of the vertices.
+        dr.eval(positions)
+        self._parameters[self._key] = positions
+        self._parameters.update()
+
+    def rays(self, subsamples: int) -> Any:
+        """Return the camera rays of a regular grid of samples, row by row."""
+        mi = mitsuba()
+        x, y = (mi.Float(v) for v in self.view.coordinates(subsamples))
+        if not self.view.perspective:
+            return mi.Ray3f(mi.Point3f(x, y, self.view.distance), mi.Vector3f(0.0, 0.0, -1.0))
+        eye = mi.Point3f(0.0, 0.0, self.view.distance)
+        return mi.Ray3f(eye, dr.normalize(mi.Point3f(x, y, 0.0) - eye))
+
+    def look(self, subsamples: int) -> tuple[Any, Any, Any, Any]:
+        """Return (points, unit normals towards the viewer, sky visibility, seen at all) of the samples, row by row."""
+        ray = self.rays(subsamples)
+        hit = self.scene.ray_intersect(ray)
+        seen = hit.is_valid()
+        # A proxy may be seen from its back (an open mesh): shade the side that is seen.
+        normals = dr.select(dr.dot(hit.sh_frame.n, ray.d) > 0.0, -hit.sh_frame.n, hit.sh_frame.n)
+        geometric = dr.select(dr.dot(hit.n, ray.d) > 0.0, -hit.n, hit.n)
+        dr.eval(hit.p, normals, geometric, seen)
+        self.towards_viewer = -ray.d
+        self._geometric = geometric
+        return hit.p, normals, self._sky(hit.p, normals, geometric, seen), seen
+
+    def _offset(self, points: Any, geometric: Any) -> Any:
+        # A hundredth of a pixel off the surface, and never less than single precision can tell apart.
+        return points + geometric * max(0.01 * self.view.pixel, 1e-5)
+
+    def _sky(self, points: Any, normals: Any, geometric: Any, seen: Any) -> Any:
+        """Return the cosine-weighted share of the sky that each point sees, over fixed directions about its normal."""
+        mi = mitsuba()
+        frame = mi.Frame3f(normals)
+        origin = self._offset(points, geometric)
+        total = dr.zeros(mi.Float, dr.width(points))
+        for index in range(SKY_RAYS):
+            radius = math.sqrt((index + 0.5) / SKY_RAYS)
+            turn = index * GOLDEN_ANGLE
+            local = dr.opaque(mi.Float, radius * math.cos(turn)), dr.opaque(mi.Float, radius * math.sin(turn))
+            up = dr.opaque(mi.Float, math.sqrt(1.0 - radius * radius))
+            direction = frame.to_world(mi.Vector3f(local[0], local[1], up))
+            free = seen & ~self.scene.ray_test(mi.Ray3f(origin, direction), seen)
+            if self.one_sided_sky:
+                free &= direction.z > 0.0
+            total += dr.select(free, 1.0, 0.0)
+            dr.eval(total)
+        return total * (1.0 / SKY_RAYS)
+
+    def lit(self, points: Any, normals: Any, direction: Any, distance: Any) -> Any:
+        """Return whether nothing stands between the samples and the light."""
+        mi = mitsuba()
+        ray = mi.Ray3f(self._offset(points, self._geometric), direction)
+        ray.maxt = dr.minimum(distance, 1e8)
+        return ~self.scene.ray_test(ray)
