@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
+from contextlib import suppress
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -33,12 +35,22 @@ def mitsuba() -> ModuleType:
     if variant not in VARIANTS:
         raise BackendError(f"VOLDETAIL_VARIANT={variant} is not one of {', '.join(VARIANTS)}: unset it or choose one")
     if variant.startswith("llvm"):
-        os.environ["DRJIT_LIBLLVM_PATH"] = str(find_llvm())
+        find_llvm()
     mi = import_module("mitsuba")
     if mi.variant() != variant:
         mi.set_variant(variant)
     mi.set_log_level(mi.LogLevel.Error)
     return mi
+
+
+def prepare() -> None:
+    """Point Dr.Jit to a usable LLVM; called when voldetail is imported, since Dr.Jit reads the variable when it is.
+
+    Where none is usable nothing happens yet: `mitsuba` says so when it is needed.
+    """
+    if "DRJIT_LIBLLVM_PATH" not in os.environ:
+        with suppress(BackendError):
+            os.environ["DRJIT_LIBLLVM_PATH"] = str(find_llvm())
 
 
 def set_threads(count: int) -> None:
@@ -63,9 +75,11 @@ def find_llvm() -> Path:
                 f"DRJIT_LIBLLVM_PATH={own} is LLVM {version}, which aborts Mitsuba: give {MINIMUM_LLVM} or newer, or unset it"
             )
         return Path(own)
-    usable = [(v, p) for p in candidates() if (v := llvm_version(p)) is not None and v >= MINIMUM_LLVM]
-    if usable:
-        return max(usable, key=lambda item: item[0])[1]
+    # Newest by its file name first, so that usually one library is asked.
+    for path in sorted(candidates(), key=_named_version, reverse=True):
+        version = llvm_version(path)
+        if version is not None and version >= MINIMUM_LLVM:
+            return path
     raise BackendError(
         f"no LLVM of version {MINIMUM_LLVM} or newer was found: install one with 'pip install karellen-llvm-core' "
         f"(Linux x86-64), 'apt install libllvm{MINIMUM_LLVM}' or 'brew install llvm', or set DRJIT_LIBLLVM_PATH to it"
@@ -86,6 +100,11 @@ def candidates() -> list[Path]:
     places += [(folder, "libLLVM*.so*") for folder in sorted(Path("/usr/lib").glob("llvm-*/lib"))]
     found = {path.resolve() for folder, pattern in places if folder.is_dir() for path in folder.glob(pattern)}
     return sorted(found)
+
+
+def _named_version(path: Path) -> int:
+    numbers = re.findall(r"\d+", path.name)
+    return int(numbers[0]) if numbers else 0
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Whatever a detail file holds, it is read or refused in one sentence; whatever is saved reads back the same."""
+"""Whatever a detail file holds, it is read or refused in one sentence; what is saved reads back the same."""
 
 import json
 from contextlib import suppress

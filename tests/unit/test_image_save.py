@@ -1,5 +1,7 @@
 """Saving pictures by suffix."""
 
+import resource
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -60,18 +62,17 @@ def test_nothing_is_left_where_saving_fails(tmp_path, linear, suffix):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("room", [0.1, 0.999])
 @pytest.mark.parametrize("suffix", [".png", ".exr", ".jpg"])
-def test_a_full_disk_leaves_the_old_picture(tmp_path, linear, suffix):
-    import resource
-
+def test_a_full_disk_leaves_the_old_picture(tmp_path, linear, suffix, room):
     path = tmp_path / f"a{suffix}"
     save_image(path, linear)
     old = path.read_bytes()
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (int(room * len(old)), limits[1]))
     try:
         with pytest.raises(InputError, match="Cannot write"):
-            save_image(path, linear * 0.5)
+            save_image(path, linear[::-1])
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert path.read_bytes() == old

@@ -1,4 +1,4 @@
-"""Whatever the setup file or an override holds, it is read or refused in one sentence; what is written reads back."""
+"""Whatever a setup file or an override holds, it is read or refused; what is written reads back equal."""
 
 import tomllib
 from pathlib import Path

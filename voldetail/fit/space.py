@@ -44,21 +44,25 @@ class Kind:
 class Space:
     """Bounds of the numbers for a photo, and the mapping to details.
 
-    domain: of the noise. scale: bounds of the cells per scene unit that the picture can show. amplitude: bounds, equal
-    where the user gave it. anisotropy: bounds.
+    domain: of the noise. scale: bounds of the cells per scene unit that the picture can show. finest: cells per scene
+    unit above which an octave would be finer than the pixels. amplitude: the user's, or None if it is searched.
+    anisotropy, roughness, stripes: bounds; roughness is the amplitude in cells, A_d s, which is better conditioned than
+    A_d: the slopes of the relief, and so its shading, go with it.
     """
 
     domain: str
     scale: tuple[float, float]
-    amplitude: tuple[float, float]
+    finest: float
+    amplitude: float | None = None
+    roughness: tuple[float, float] = (0.05, 1.6)
     anisotropy: tuple[float, float] = (0.2, 5.0)
     stripes: tuple[float, float] = (0.4, 4.0)
 
     def names(self, kind: Kind) -> list[str]:
         """Return the names of the numbers of ``kind``, in order."""
         out = ["noise.scale", "noise.anisotropy", "noise.angle"]
-        if self.amplitude[0] < self.amplitude[1]:
-            out.append("relief.amplitude")
+        if self.amplitude is None:
+            out.append("roughness")
         if kind.octaves > 1:
             out.append("noise.lacunarity")
         if kind.striped:
@@ -70,12 +74,11 @@ class Space:
         if name.startswith("shape."):
             return -SHAPE_RANGE, SHAPE_RANGE, False
         own = {
-            "noise.scale": self.scale, "relief.amplitude": self.amplitude, "noise.anisotropy": self.anisotropy,
+            "noise.scale": self.scale, "roughness": self.roughness, "noise.anisotropy": self.anisotropy,
             "noise.stripe_frequency": self.stripes,
         }.get(name)
         low, high = own or bounds(name)
-        # Amplitude spans two decades here, so its search is logarithmic though its declaration is linear.
-        return low, high, parameter(name).scale == "log" or name in ("relief.amplitude", "noise.stripe_frequency")
+        return low, high, name in ("roughness", "noise.stripe_frequency") or parameter(name).scale == "log"
 
     def decode(self, kind: Kind, vector: Vector) -> Detail:
         """Return the Detail at ``vector`` (each number in [0, 1]; angles wrap, the rest is clipped)."""
@@ -85,15 +88,19 @@ class Space:
             unit = unit % 1.0 if name == "noise.angle" else min(max(float(unit), 0.0), 1.0)
             values[name] = low * (high / low) ** unit if log else low + unit * (high - low)
         shape = np.array([values[f"shape.{i}"] for i in range(SHAPE_COUNT)])
+        lacunarity = values.get("noise.lacunarity", parameter("noise.lacunarity").default)
+        shown = 1 + int(max(0.0, math.log(self.finest / values["noise.scale"]) / math.log(lacunarity)))
         noise = NoiseParameters(
             domain=self.domain, first_neighbour=kind.first, last_neighbour=kind.last, envelope=kind.envelope,  # type: ignore[arg-type]
-            octaves=kind.octaves, lacunarity=values.get("noise.lacunarity", parameter("noise.lacunarity").default),
+            octaves=min(kind.octaves, shown), lacunarity=lacunarity,
             stripe_frequency=values.get("noise.stripe_frequency", 0.0),
             stripe_spread=values.get("noise.stripe_spread", 0.0),
             scale=values["noise.scale"], anisotropy=values["noise.anisotropy"], angle=values["noise.angle"],
             curve=tuple(float(v) for v in fold(profile(shape), kind.fold)),
         )
-        amplitude = values.get("relief.amplitude", self.amplitude[0])
+        amplitude = self.amplitude
+        if amplitude is None:
+            amplitude = min(values["roughness"] / values["noise.scale"], bounds("relief.amplitude")[1])
         return Detail(noise=noise, relief=ReliefParameters(amplitude=amplitude))
 
     def encode(self, kind: Kind, values: dict[str, float]) -> Vector:

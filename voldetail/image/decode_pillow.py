@@ -2,6 +2,8 @@
 
 import sys
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -41,10 +43,13 @@ def decode_pillow(path: Path, what: str) -> Samples:
         return Samples(values, alpha, 1 if turned else _orientation(picture), tuple(notes + _profile(picture)))
 
 
-def _open(path: Path) -> Image.Image:
-    with warnings.catch_warnings():
+@contextmanager
+def _open(path: Path) -> Iterator[Image.Image]:
+    # A stream and not the name: by name, Pillow maps uncompressed TIFFs into memory and garbles those on their side.
+    with open(path, "rb") as stream, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a large picture is our own check's affair, odd metadata nobody's
-        return Image.open(path, formats=FORMATS)
+        with Image.open(stream, formats=FORMATS) as picture:
+            yield picture
 
 
 def _rawmode(picture: Any) -> str:

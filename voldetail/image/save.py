@@ -1,6 +1,7 @@
 """Linear images to files, by suffix."""
 
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from voldetail.errors import InputError, VoldetailError
-from voldetail.files import atomic
+from voldetail.files import atomic, write_bytes
 from voldetail.image.srgb import to_srgb
 
 _JPEG_QUALITY = 95  # the highest that Pillow recommends; above it files grow and pictures do not improve
@@ -69,8 +70,9 @@ def check_suffix(path: str | Path) -> None:
 
 def _save_pillow(path: Path, linear: NDArray[Any], **options: Any) -> None:
     encoded = np.rint(np.clip(to_srgb(_checked(path, linear)), 0, 1) * 255).astype(np.uint8)
-    with atomic(Path(path)) as temporary:
-        Image.fromarray(encoded).save(temporary, **options)
+    buffer = BytesIO()  # and not the file: Pillow was seen to leave half a JPEG on a full disk without a word
+    Image.fromarray(encoded).save(buffer, **options)
+    write_bytes(Path(path), buffer.getvalue())
 
 
 def _checked(path: Path, linear: NDArray[Any]) -> NDArray[np.float32]:

@@ -60,7 +60,7 @@ def _banded(frequencies: tuple[int, ...], stride: int) -> Array:
     matrix = np.zeros((len(kernels), block, stride * (block - 1) + WINDOW), np.float32)
     for o in range(block):
         matrix[:, o, stride * o : stride * o + WINDOW] = kernels
-    return matrix.reshape(len(kernels) * block, -1)
+    return np.reshape(matrix, (len(kernels) * block, -1))
 
 
 def _along_rows(x: Array, frequencies: tuple[int, ...], stride: int) -> Array:

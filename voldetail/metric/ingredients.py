@@ -35,4 +35,14 @@ INGREDIENTS: Mapping[str, Ingredient] = MappingProxyType(
     }
 )
 
-COMBINED: Mapping[str, Mapping[str, float]] = MappingProxyType({})
+COMBINED: Mapping[str, Mapping[str, float]] = MappingProxyType(
+    {
+        "magnitudes": {"within level 0": 0.14, "space level 0": 0.14, "across level 0": 0.03,
+                       "within level 1": 0.03, "space level 1": 0.06, "across level 1": 0.03},
+        "patterns": {"level 0": 0.06, "level 0 smoothed": 0.14, "level 1": 0.05},
+        "marginals": {"level 0": 0.05, "level 1": 0.02, "level 2": 0.02,
+                      "shape level 0": 0.10, "shape level 1": 0.03},
+        "spectrum": {"level 0": 0.04, "level 1": 0.03, "level 2": 0.03},
+    }
+)  # fmt: skip
+"""Weight of each part of the default metric; they add up to 1."""

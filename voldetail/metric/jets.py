@@ -1,49 +1,58 @@
-"""Joint histogram over levels of local jets: Basic Image Features columns (Crosier & Griffin 2010)."""
+"""Joint histogram over levels of local jets: columns of Basic Image Features (Crosier & Griffin 2010).
+
+Each pixel of a level belongs to the kind of local structure that its derivatives up to order two answer most: flat,
+slope, dark or light blob, dark or light line, saddle. Counted are the pairs of kinds at one place in adjacent levels.
+"""
 
 import numpy as np
+from numpy.typing import NDArray
 
-from voldetail.metric.layers import Layers, inside
+from voldetail.metric.layers import LEVELS, Layers
 from voldetail.metric.marginals import smoothed
 from voldetail.metric.quantiles import Array, Parts
 
-CLASSES = 7
-FLAT = 0.02
+KINDS = 7
 
+FLATNESS = 0.02
+"""Share of the local brightness below which any structure counts as flat (epsilon of the paper; tuned on photos)."""
 
-def classes(image: Array) -> np.ndarray:
-    s = smoothed(image)
-    c = s[1:-1, 1:-1]
-    x = (s[1:-1, 2:] - s[1:-1, :-2]) / 2
-    y = (s[2:, 1:-1] - s[:-2, 1:-1]) / 2
-    xx = s[1:-1, 2:] + s[1:-1, :-2] - 2 * c
-    yy = s[2:, 1:-1] + s[:-2, 1:-1] - 2 * c
-    xy = (s[2:, 2:] + s[:-2, :-2] - s[2:, :-2] - s[:-2, 2:]) / 4
-    lam = (xx + yy)
-    gam = np.sqrt((xx - yy) ** 2 + 4 * xy**2)
-    r2 = np.float32(2 ** -0.5)
-    stack = np.stack([FLAT * c, 2 * np.sqrt(x * x + y * y), lam, -lam, r2 * (gam + lam), r2 * (gam - lam), gam])
-    return stack.argmax(0).astype(np.int32)
+_SUPPORT = 7
 
 
 def basis(layers: Layers, /) -> Parts:
+    """Nothing: the kinds need no range."""
     return {}
 
 
 def measure(layers: Layers, basis: Parts, /) -> Parts:
-    codes = [classes(i) for i in layers.images]
-    found = {}
-    for l in (0, 1):
-        fine = codes[l][3::2, 3::2]
-        coarse = codes[l + 1]
-        # code pixel y is image pixel y+3; fine 2y'+6 = 2(y'+3)
-        h, w = min(fine.shape[0], coarse.shape[0]), min(fine.shape[1], coarse.shape[1])
-        joint = fine[:h, :w] * 7 + coarse[:h, :w]
-        if layers.masks[l + 1] is not None:
-            joint = joint[inside(layers.masks[l + 1], 7)[:h, :w]]
-        n = np.bincount(joint.ravel(), minlength=49)
-        found[f"{l}-{l+1}"] = (n / n.sum()).astype(np.float32)
+    """Shares (49,) of the pairs of kinds, for levels 0 and 1, 1 and 2."""
+    kinds = [_kinds(image) for image in layers.images]
+    found: dict[str, Array] = {}
+    for level in range(LEVELS - 1):
+        # Kind (y, x) belongs to pixel (y + 3, x + 3), and coarse pixel y + 3 lies on fine pixel 2 y + 6.
+        fine, coarse = kinds[level][3::2, 3::2], kinds[level + 1]
+        rows, columns = min(fine.shape[0], coarse.shape[0]), min(fine.shape[1], coarse.shape[1])
+        pairs = fine[:rows, :columns] * KINDS + coarse[:rows, :columns]
+        allowed = layers.windows(level + 1, _SUPPORT)
+        picked = pairs.ravel() if allowed is None else pairs[allowed[:rows, :columns]]
+        counts = np.bincount(picked, minlength=KINDS * KINDS)
+        found[f"level {level}"] = (counts / max(counts.sum(), 1)).astype(np.float32)
     return found
 
 
 def compare(a: Array, b: Array, basis: Array | None, /) -> float:
+    """Hellinger distance, 0 to 1."""
     return float(np.sqrt(np.sum((np.sqrt(a) - np.sqrt(b)) ** 2) / 2))
+
+
+def _kinds(image: Array) -> NDArray[np.intp]:
+    """Kind 0..6 of each pixel, (H, W) -> (H - 6, W - 6)."""
+    s = smoothed(image)
+    centre, left, right, up, down = s[1:-1, 1:-1], s[1:-1, :-2], s[1:-1, 2:], s[:-2, 1:-1], s[2:, 1:-1]
+    xx, yy = right + left - 2 * centre, down + up - 2 * centre
+    xy = (s[2:, 2:] + s[:-2, :-2] - s[2:, :-2] - s[:-2, 2:]) / 4
+    slope = np.hypot(right - left, down - up)
+    mean, bent = xx + yy, np.hypot(xx - yy, 2 * xy)
+    half = np.float32(2**-0.5)
+    answers = [FLATNESS * centre, slope, mean, -mean, half * (bent + mean), half * (bent - mean), bent]
+    return np.asarray(np.argmax(np.stack(answers, axis=-1), axis=-1))

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from voldetail.metric.filters import WINDOW, responses
 
 Array = NDArray[np.float32]
 Mask = NDArray[np.bool_]
+_Value = TypeVar("_Value", bound=np.generic)
 
 LEVELS = 3
 """Levels of the Gaussian pyramid, GD10 section 5."""
@@ -27,7 +29,7 @@ def inside(mask: Mask, size: int) -> Mask:
     sums = np.zeros((mask.shape[0] + 1, mask.shape[1] + 1), np.int32)
     sums[1:, 1:] = mask.cumsum(0, dtype=np.int32).cumsum(1, dtype=np.int32)
     count = sums[size:, size:] - sums[:-size, size:] - sums[size:, :-size] + sums[:-size, :-size]
-    return count == size * size
+    return np.asarray(count == size * size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +57,9 @@ class Layers:
         mask = self.masks[level]
         return None if mask is None else inside(mask, size)
 
-    def pick(self, values: Array, level: int, size: int = WINDOW, stride: int = 1) -> Array:
+    def pick(
+        self, values: NDArray[_Value], level: int, size: int = WINDOW, stride: int = 1
+    ) -> NDArray[_Value]:
         """(K, h, w) values of size x size windows -> (K, N): those that the mask allows."""
         allowed = self.windows(level, size)
         if allowed is None:

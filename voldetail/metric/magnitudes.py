@@ -1,17 +1,25 @@
-"""How filter magnitudes go together: over frequencies, levels and space (after Portilla & Simoncelli 2000, section 2.3).
+"""How filter magnitudes go together: over frequencies, levels and space (after Portilla & Simoncelli 2000, section 2).
 
-Edges, cracks and grains excite several orientations, frequencies and levels at one place and in repeating places;
-a picture with the same spectrum and random phases does not. Correlations do not see the spectrum itself.
+Edges, cracks and grains excite several orientations, frequencies and levels at one place, and again at the next
+grain; a picture with the same spectrum and random phases does not. The magnitudes are those of GD10 eq. 4, so they
+cost nothing more. Correlations do not see the spectrum itself, nor contrast.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from voldetail.metric.filters import WINDOW
 from voldetail.metric.layers import LEVEL_NAMES, LEVELS, Layers, inside
 from voldetail.metric.quantiles import Array, Parts
 
-LAGS = ((0, 4), (4, 0), (4, 4), (4, -4), (0, 8), (8, 0), (0, 12), (12, 0))
-"""Displacements (rows, columns) between magnitudes of one filter, in steps of the level's map."""
+LAGS = ((0, 8), (8, 0), (8, 8), (8, -8), (0, 16), (16, 0), (0, 24), (24, 0))
+"""Displacements (rows, columns) between magnitudes of one filter, in pixels of the level: from one window's side
+on, below which windows overlap and correlate whatever the picture."""
+
+_FAINT = np.float32(1e-4)
+"""Magnitudes that deviate less than this (encoded units) do not vary, they round."""
+
+Allowed = NDArray[np.bool_]
 
 
 def basis(layers: Layers, /) -> Parts:
@@ -20,28 +28,27 @@ def basis(layers: Layers, /) -> Parts:
 
 
 def measure(layers: Layers, basis: Parts, /) -> Parts:
-    """Correlations of the amplitudes: (136,) within a level, (289,) to the next, (17 * lags,) in space."""
-    found = {}
-    standard = layers.maps
+    """Correlations of the magnitudes: (136,) within a level, (289,) with the next, (17 * lags,) in space."""
+    found: dict[str, Array] = {}
+    maps = [_standardised(layers, level) for level in range(LEVELS)]
     for level, name in enumerate(LEVEL_NAMES):
-        maps, allowed = _standardised(standard[level], layers, level)
-        flat = maps.reshape(len(maps), -1)
-        weight = max(int(allowed.sum()), 1)
-        upper = np.triu_indices(len(maps), 1)
-        found[f"within {name}"] = (flat @ flat.T)[upper] / weight
-        found[f"space {name}"] = np.concatenate([_lagged(maps, allowed, *lag) for lag in LAGS])
+        magnitudes, allowed = maps[level]
+        upper = np.triu_indices(len(magnitudes), 1)
+        found[f"within {name}"] = _correlations(magnitudes, magnitudes, allowed)[upper]
+        step = 1 if level else 2
+        lags = ((rows // step, columns // step) for rows, columns in LAGS)
+        found[f"space {name}"] = np.concatenate([_lagged(magnitudes, allowed, *lag) for lag in lags])
         if level + 1 < LEVELS:
-            coarse, coarse_allowed = _standardised(standard[level + 1], layers, level + 1)
-            # Window centres: coarse pixel y + 3 lies on fine pixel 2 y + 6, the centre of the fine window 2 y + 3.
-            rows, columns = coarse_allowed.shape
-            fine = maps[:, 1:, 1:] if level == 0 else maps[:, 3::2, 3::2]
-            fine_allowed = allowed[1:, 1:] if level == 0 else allowed[3::2, 3::2]
-            rows, columns = min(rows, fine.shape[1]), min(columns, fine.shape[2])
-            both = fine_allowed[:rows, :columns] & coarse_allowed[:rows, :columns]
-            fine, coarse = fine[:, :rows, :columns], coarse[:, :rows, :columns]
-            product = fine.reshape(len(fine), -1) @ coarse.reshape(len(coarse), -1).T
-            found[f"across {name}"] = product.ravel() / max(int(both.sum()), 1)
-    return {part: values.astype(np.float32) for part, values in found.items()}
+            coarse, coarse_allowed = maps[level + 1]
+            # Window y is centred on pixel y + 3, and coarse pixel y + 3 lies on fine pixel 2 y + 6: fine window
+            # 2 y + 3, at level 0 (every second window) its neighbour 2 (y + 1).
+            first, step = (1, 1) if level == 0 else (3, 2)
+            fine = magnitudes[:, first::step, first::step]
+            rows, columns = np.minimum(fine.shape[1:], coarse.shape[1:])
+            both = allowed[first::step, first::step][:rows, :columns] & coarse_allowed[:rows, :columns]
+            across = _correlations(fine[:, :rows, :columns], coarse[:, :rows, :columns], both)
+            found[f"across {name}"] = across.ravel()
+    return found
 
 
 def compare(a: Array, b: Array, basis: Array | None, /) -> float:
@@ -49,25 +56,32 @@ def compare(a: Array, b: Array, basis: Array | None, /) -> float:
     return float(np.sqrt(np.mean((a - b) ** 2)))
 
 
-def _standardised(maps: Array, layers: Layers, level: int) -> tuple[Array, np.ndarray]:
-    """Maps with mean 0 and variance 1 over the allowed windows and 0 elsewhere; and those windows."""
-    mask = layers.masks[level]
-    stride = 1 if level else 2
-    allowed = np.ones(maps.shape[1:], bool) if mask is None else inside(mask, WINDOW)[::stride, ::stride]
-    flat = maps.reshape(len(maps), -1)
-    weight = allowed.ravel().astype(np.float32)
+def _standardised(layers: Layers, level: int) -> tuple[Array, Allowed]:
+    """Maps (17, h, w) with mean 0 and variance 1 over the allowed windows and 0 elsewhere; and those windows."""
+    maps, mask = layers.maps[level], layers.masks[level]
+    step = 1 if level else 2
+    allowed = np.ones(maps.shape[1:], bool) if mask is None else inside(mask, WINDOW)[::step, ::step]
+    flat, weight = maps.reshape(len(maps), -1), allowed.ravel().astype(np.float32)
     count = max(float(weight.sum()), 1.0)
-    mean = flat @ weight / count
-    centred = (flat - mean[:, None]) * weight
+    centred = flat - (flat @ weight / count)[:, None]
+    if mask is not None:
+        centred *= weight
     deviation = np.sqrt(np.einsum("kn,kn->k", centred, centred) / count)
-    centred /= np.maximum(deviation, np.float32(1e-4))[:, None]
+    centred /= np.maximum(deviation, _FAINT)[:, None]
     return centred.reshape(maps.shape), allowed
 
 
-def _lagged(maps: Array, allowed: np.ndarray, rows: int, columns: int) -> Array:
-    """Correlation of each map with itself displaced by (rows, columns)."""
+def _correlations(one: Array, other: Array, allowed: Allowed) -> Array:
+    product: Array = one.reshape(len(one), -1) @ other.reshape(len(other), -1).T
+    return product / np.float32(max(int(allowed.sum()), 1))
+
+
+def _lagged(maps: Array, allowed: Allowed, rows: int, columns: int) -> Array:
+    """Correlation of each map with itself displaced by (rows, columns), (17,); 0 where no pair is allowed."""
     height, width = allowed.shape
-    near = (slice(0, max(height - rows, 0)), slice(max(-columns, 0), width - max(columns, 0)))
+    if rows >= height or abs(columns) >= width:
+        return np.zeros(len(maps), np.float32)
+    near = (slice(0, height - rows), slice(max(-columns, 0), width - max(columns, 0)))
     far = (slice(rows, height), slice(max(columns, 0), width - max(-columns, 0)))
     pairs = max(int((allowed[near] & allowed[far]).sum()), 1)
-    return np.einsum("kij,kij->k", maps[:, *near], maps[:, *far]) / pairs
+    return np.einsum("kij,kij->k", maps[:, *near], maps[:, *far]) / np.float32(pairs)

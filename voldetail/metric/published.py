@@ -1,11 +1,9 @@
 """The metric as published: histograms of filter amplitudes, GD10 section 5."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from voldetail.metric.layers import LEVEL_NAMES, Layers
-
-Array = NDArray[np.float32]
+from voldetail.metric.quantiles import Array, Parts
 
 BINS = 32
 """h_n of GD10, section 5."""

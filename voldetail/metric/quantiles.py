@@ -21,7 +21,8 @@ def quantile_functions(values: Array) -> Array:
         samples = ordered.shape[1]
     edges = np.linspace(0, samples, STEPS + 1).round().astype(np.intp)
     sums = np.add.reduceat(ordered, edges[:-1], axis=1)
-    return (sums / np.diff(edges)).astype(np.float32)
+    functions: Array = (sums / np.diff(edges)).astype(np.float32)
+    return functions
 
 
 def spread(functions: Array) -> Array:

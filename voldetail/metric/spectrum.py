@@ -4,8 +4,6 @@ Histograms that miss each other by one bin or by thirty are equally far apart bi
 still says which of two wrong pictures is less wrong, so a search can follow it.
 """
 
-import numpy as np
-
 from voldetail.metric.layers import LEVEL_NAMES, Layers
 from voldetail.metric.quantiles import Array, Parts, quantile_functions, spread, wasserstein
 
@@ -17,7 +15,7 @@ def basis(layers: Layers, /) -> Parts:
 
 def measure(layers: Layers, basis: Parts, /) -> Parts:
     """Quantile functions of the amplitudes, (17, 32) a level."""
-    found = {}
+    found: dict[str, Array] = {}
     for level, name in enumerate(LEVEL_NAMES):
         picked = layers.pick(layers.maps[level], level, stride=1 if level else 2)
         found[name] = quantile_functions(picked)
@@ -26,4 +24,4 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
 
 def compare(a: Array, b: Array, basis: Array | None, /) -> float:
     """Mean over frequencies, in standard deviations of the reference."""
-    return wasserstein(a, b, np.asarray(basis))
+    return wasserstein(a, b, basis)

@@ -1,4 +1,4 @@
-"""Distribution of the encoded pixel values."""
+"""Distribution of the encoded pixel values, which says nothing about where they lie."""
 
 from voldetail.metric.layers import Layers
 from voldetail.metric.quantiles import Array, Parts, quantile_functions, spread, wasserstein

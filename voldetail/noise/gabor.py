@@ -60,9 +60,8 @@ def relief_function(
     sum_of_squares: Any = float_type(0.0)
     for octave in range(settings.octaves):
         scaled = tuple(v * frequency for v in x)
-        total += weight * single_octave(
-            scaled, settings, seed + octave * OCTAVE_SALT, stripe_frequency, stripe_spread
-        )
+        salt = seed + (octave * OCTAVE_SALT & 0xFFFFFFFF)
+        total += weight * single_octave(scaled, settings, salt, stripe_frequency, stripe_spread)
         sum_of_weights += weight
         sum_of_squares += weight * weight
         weight = weight / lacunarity

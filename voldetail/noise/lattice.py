@@ -98,7 +98,7 @@ def feature_point(
 
 
 class Neighbourhood:
-    """Positions split into own cell, remainder and nearer side, and the cells around in the order of a table."""
+    """Positions split into own cell, remainder and nearer side, and the cells around in a table's order."""
 
     def __init__(self, x: tuple[Any, ...], salt: Any, radius: float) -> None:
         self.dims = len(x)

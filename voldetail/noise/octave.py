@@ -1,4 +1,4 @@
-"""One octave of cellular-Gabor noise, N of GD10 eq. 2: envelope times stripes over the closest feature points.
+"""One octave of cellular-Gabor noise, GD10 eq. 2: envelope times stripes over the closest feature points.
 
 Symbols
     N_{k,k',phi,theta}(x)   one octave, summed over the k-th to k'-th closest feature points P_i

@@ -1,0 +1,107 @@
+"""Starting candidates: what is tried before anything is refined."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import qmc
+
+from voldetail.detail import MONOTONE_CURVES, PAPER_NEIGHBOURS, START_CURVES
+from voldetail.fit.space import FOLDS, Kind, Space, Vector, shape_of
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A point of the space with what is known of it: its value, the spread still to search, evaluations spent on it."""
+
+    kind: Kind
+    vector: Vector
+    value: float = math.inf
+    spread: float = 0.2
+    spent: int = 0
+
+
+def sampled(space: Space, count: int, seed: int, anisotropy: tuple[float, float], folds: bool = True) -> list[Candidate]:
+    """Return ``count`` candidates that cover choices and numbers evenly (a scrambled Sobol sequence).
+
+    ``anisotropy`` is (factor, angle) of the photo's own spectrum; half of the candidates start from it and half from
+    round cells, since the light alone makes any relief look stretched across it.
+    """
+    kinds = [
+        Kind(first, last, envelope, octaves, striped, fold)
+        for (first, last), envelope, octaves, striped, fold in itertools.product(
+            PAPER_NEIGHBOURS, ("gaussian", "exponential"), (1, 2, 3), (False, True), FOLDS if folds else ("none",)
+        )
+        # Stripes are their own fold; together they only multiply the choices.
+        if not (striped and fold != "none")
+    ]
+    generator = qmc.Sobol(d=8, scramble=True, seed=np.random.default_rng(seed))
+    points = generator.random_base2(math.ceil(math.log2(max(count, 2))))[:count]
+    order = np.random.default_rng(seed).permutation(len(kinds))
+    factor, angle = anisotropy
+    out = []
+    for index, point in enumerate(points):
+        kind = kinds[order[index % len(kinds)]]
+        low, high = space.scale
+        rough_low, rough_high = space.roughness
+        stretched = index % 2 == 0
+        shape = START_CURVES[MONOTONE_CURVES[int(point[3] * len(MONOTONE_CURVES)) % len(MONOTONE_CURVES)]]
+        values = {
+            "noise.scale": low * (high / low) ** float(point[0]),
+            "roughness": rough_low * (rough_high / rough_low) ** float(point[1]),
+            "noise.anisotropy": 1.0 / factor if stretched else 1.0,
+            "noise.angle": angle if stretched else math.pi * float(point[2]),
+            "noise.lacunarity": 1.5 + 1.5 * float(point[4]),
+            "noise.stripe_frequency": 0.5 * 6.0 ** float(point[5]),
+            "noise.stripe_spread": math.pi * (1.0 if point[6] < 0.5 else float(point[7])),
+        } | {f"shape.{i}": float(v) for i, v in enumerate(shape_of(shape))}
+        out.append(Candidate(kind, space.encode(kind, values)))
+    return out
+
+
+PAPER_FREQUENCIES = (0.0, 2.0, 4.0)
+PAPER_LACUNARITIES = (1.5, 2.0, 4.0)
+PAPER_OCTAVES = (1, 2, 3, 4)
+PAPER_SCALES = 5
+PAPER_ROUGHNESS = (0.2, 0.6)
+
+
+def paper_grid(space: Space, anisotropy: tuple[float, float]) -> list[Candidate]:
+    """Return GD10's coarse samples: its sets of (k, k'), m, phi and n, the starting curves, and a few scales.
+
+    The envelope is eq. 2's, theta is pi where there are stripes (as in figure 5), the anisotropy that of the spectrum.
+    """
+    factor, angle = anisotropy
+    low, high = space.scale
+    out = []
+    for (first, last), phi, m, n, curve, step, rough in itertools.product(
+        PAPER_NEIGHBOURS, PAPER_FREQUENCIES, PAPER_LACUNARITIES, PAPER_OCTAVES, MONOTONE_CURVES,
+        range(PAPER_SCALES), PAPER_ROUGHNESS if space.amplitude is None else (0.0,),
+    ):
+        if n == 1 and m != PAPER_LACUNARITIES[0]:
+            continue  # with one harmonic m has no effect
+        kind = Kind(first, last, "exponential", n, phi > 0)
+        values = {
+            "noise.scale": low * (high / low) ** ((step + 0.5) / PAPER_SCALES), "roughness": max(rough, 1e-3),
+            "noise.anisotropy": 1.0 / factor, "noise.angle": angle, "noise.lacunarity": m,
+            "noise.stripe_frequency": phi, "noise.stripe_spread": math.pi,
+        } | {f"shape.{i}": float(v) for i, v in enumerate(shape_of(START_CURVES[curve]))}
+        out.append(Candidate(kind, space.encode(kind, values)))
+    return out
+
+
+def best_distinct(candidates: list[Candidate], count: int) -> list[Candidate]:
+    """Return the ``count`` best candidates of different kinds, octaves aside; the best of all come first."""
+    chosen: list[Candidate] = []
+    seen = set()
+    for candidate in sorted(candidates, key=lambda c: c.value):
+        key = replace(candidate.kind, octaves=1)
+        if key not in seen:
+            seen.add(key)
+            chosen.append(candidate)
+        if len(chosen) == count:
+            break
+    return chosen

@@ -1,0 +1,157 @@
+"""The fit as a whole: from a Setup to a FitResult. Writes nothing; states and progress go to callbacks."""
+
+from __future__ import annotations
+
+import importlib.metadata
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voldetail import __version__
+from voldetail.backend import mitsuba
+from voldetail.detail import Detail, NoiseFloor, Provenance, rounded
+from voldetail.errors import InputError, VoldetailError
+from voldetail.fit.objective import Evaluation, Objective
+from voldetail.fit.plans import default_plan, paper_plan
+from voldetail.fit.session import Progress, Session, State, Stopped, derived_seed
+from voldetail.fit.space import Space
+from voldetail.fit.target import Target, make_target
+from voldetail.image import Photo
+from voldetail.metric import METRICS, describe, distance
+from voldetail.metric.anisotropy import anisotropy
+from voldetail.scene.build import build
+from voldetail.scene.lights_text import light_text
+from voldetail.scene.setup import Setup
+
+SMALLEST_CELL = 3.0
+"""Pixels a cell must span: smaller ones cannot be told from pixel noise."""
+
+LARGEST_CELL = 0.6
+"""Share of the zone that a cell may span: larger ones leave too few to have statistics."""
+
+FINEST_OCTAVE = 1.6
+"""Pixels a cell of the finest octave must span, near the sampling limit of the mesh's one vertex a pixel."""
+
+
+@dataclass(frozen=True)
+class FitResult:
+    """What a fit found. status says in a sentence why it ended; trace is (evaluations, best distance) as it fell."""
+
+    detail: Detail
+    setup: Setup
+    target: Target
+    picture: NDArray[np.float32]
+    distance: float
+    evaluations: int
+    seconds: float
+    status: str
+    trace: tuple[tuple[int, float], ...]
+    interrupted: bool
+
+
+def fit(
+    setup: Setup, *, photo: Photo | None = None, start: State | None = None,
+    on_progress: Callable[[Progress], None] = lambda progress: None,
+    on_state: Callable[[State], None] = lambda state: None,
+) -> FitResult:
+    """Return the Detail whose rendering has the texture statistics of the photo (GD10 section 7).
+
+    ``start`` continues an interrupted fit from one of the states handed to ``on_state``. Ctrl-C ends the search with
+    the best so far. Raises InputError for input that cannot be used.
+    """
+    if setup.fit.metric not in METRICS:
+        raise InputError(f"There is no metric {setup.fit.metric!r}: choose one of {', '.join(METRICS)}.")
+    mitsuba()
+    target = make_target(setup, photo)
+    session, stages = _session(setup, target, start, on_progress, on_state)
+    status, interrupted = "the plan was carried out", False
+    try:
+        while session.stage < len(stages):
+            session.stage_name = stages[session.stage].name
+            stages[session.stage].run(session)
+            session.stage += 1
+            session.save()
+    except Stopped as reason:
+        status = str(reason)
+    except KeyboardInterrupt:
+        status, interrupted = "stopped by the user; this is the best so far", True
+        session.save()
+    if not session.pool:
+        raise VoldetailError("The fit was stopped before a first detail was found: let it run a little longer.")
+    final = _finish(session)
+    return FitResult(
+        detail=_sign(setup, target, session, final, status), setup=setup, target=target, picture=final.picture,
+        distance=final.distance, evaluations=session.evaluations, seconds=session.seconds, status=status,
+        trace=tuple(session.trace), interrupted=interrupted,
+    )
+
+
+def space_of(setup: Setup, target: Target) -> Space:
+    """Return the space of details that the zone of ``target`` can show."""
+    rows, columns = target.mask.shape
+    pixel = 2.0 / max(target.shape) * max(target.zone[2:]) / max(rows, columns)
+    return Space(
+        domain=setup.domain,
+        scale=(1.0 / (LARGEST_CELL * max(rows, columns) * pixel), 1.0 / (SMALLEST_CELL * pixel)),
+        finest=1.0 / (FINEST_OCTAVE * pixel), amplitude=setup.amplitude,
+    )
+
+
+def _session(
+    setup: Setup, target: Target, start: State | None,
+    on_progress: Callable[[Progress], None], on_state: Callable[[State], None],
+) -> tuple[Session, tuple]:
+    planner = paper_plan if setup.fit.solver == "paper" else default_plan
+    plan = planner(anisotropy(target.luminance, target.mask), setup.fit.evaluations)
+    fine = Objective(target, build(setup, target.shape, target.zone), specular=setup.fit.specular)
+    half = setup.model_copy(
+        update={"photo": setup.photo.model_copy(update={"resolution": max(target.mask.shape) // 2})}
+    )
+    coarse_target = target.reduced(setup.fit.metric)
+    coarse = Objective(coarse_target, build(half, target.shape, target.zone), specular=setup.fit.specular)
+    # The budget that the user named is a limit; the plan's own is an estimate with room for rounding.
+    planned = setup.fit.evaluations or plan.evaluations
+    session = Session(
+        coarse, fine, space_of(setup, target), setup.seed, planned, setup.fit.seeds, setup.fit.time_limit,
+        on_progress, on_state, start,
+    )
+    return session, plan.stages
+
+
+def _finish(session: Session) -> Evaluation:
+    """Return the evaluation of the winner under the detail's own seed, at full resolution."""
+    finite = [c for c in session.pool if np.isfinite(c.value)] or session.pool
+    best = min(finite, key=lambda c: c.value)
+    detail = rounded(session.space.decode(best.kind, best.vector))
+    return session.fine.evaluate(detail, derived_seed(session.root_seed, "detail"))
+
+
+def _sign(setup: Setup, target: Target, session: Session, final: Evaluation, status: str) -> Detail:
+    """Return the detail with its noise floor and provenance."""
+    other = session.fine.evaluate(final.detail, derived_seed(session.root_seed, "floor"))
+    mask = final.mask & other.mask
+    own = describe(final.picture, mask, metric=setup.fit.metric)
+    floor = distance(own, describe(other.picture, mask, like=own))
+    version = importlib.metadata.version
+    provenance = Provenance(
+        voldetail=__version__, created=datetime.now(UTC).isoformat(timespec="seconds"), photo=setup.photo.name,
+        photo_sha256=target.photo.sha256, zone=target.zone, resolution=setup.photo.resolution,
+        light=light_text(setup.light), proxy=setup.proxy.kind, solver=setup.fit.solver, metric=setup.fit.metric,
+        evaluations=session.evaluations, seconds=round(session.seconds, 2), distance=final.distance,
+        mitsuba=version("mitsuba"), drjit=version("drjit"), numpy=version("numpy"),
+        settings={"root_seed": setup.seed, "status": status, "noise_seeds": setup.fit.seeds},
+    )
+    named = final.detail.model_copy(
+        update={
+            "name": (setup.photo.skimage or setup.photo.name)[:200],
+            "noise_floor": NoiseFloor(other_seed=floor, photo_halves=target.photo_halves),
+            "provenance": provenance,
+        }
+    )
+    return rounded(Detail.model_validate(named.model_dump()))
+
+
+__all__ = ["FitResult", "Progress", "State", "fit", "replace"]
