@@ -79,7 +79,8 @@ def components(
     dr.eval(pictures)
     shape = (surface.view.rows, surface.view.columns)
     pooled = [_pool(np.asarray(p), shape, subsamples) for p in pictures]
-    return Components(pooled[1], pooled[2], np.stack(pooled[3:]), shininess, pooled[0])
+    lobes_pooled = np.stack(pooled[3:]) if lobes else np.zeros((0, *shape), dtype=np.float32)
+    return Components(pooled[1], pooled[2], lobes_pooled, shininess, pooled[0])
 
 
 def _pool(samples: NDArray[np.float32], shape: tuple[int, int], subsamples: int) -> NDArray[np.float32]:
@@ -89,3 +90,35 @@ def _pool(samples: NDArray[np.float32], shape: tuple[int, int], subsamples: int)
     # Sums of strided slices: ten times faster than a mean over two axes of a few elements.
     total = sum(blocks[:, i, :, j] for i in range(subsamples) for j in range(subsamples))
     return np.asarray(total * np.float32(1.0 / subsamples**2), dtype=np.float32)
+
+
+def traced_picture(surface: MeshSurface, samples: int, background: float, seed: int = 0) -> NDArray[np.float32]:
+    """Return the path-traced picture (H, W, 3) of a surface whose scene holds its lights.
+
+    Where there is no surface it is ``background``: the environment lights the object and is not itself shown.
+    """
+    mi = mitsuba()
+    view = surface.view
+    half_wide = (view.right - view.left) / 2
+    film = {
+        "type": "hdrfilm", "width": view.columns, "height": view.rows, "pixel_format": "rgba",
+        "component_format": "float32", "rfilter": {"type": "box"},
+    }
+    if view.perspective:
+        angle = 2.0 * np.degrees(np.arctan(half_wide / view.distance))
+        sensor = {
+            "type": "perspective", "fov": float(angle), "fov_axis": "x",
+            "to_world": mi.ScalarTransform4f().look_at([0, 0, view.distance], [0, 0, 0], [0, 1, 0]), "film": film,
+        }
+    else:
+        placed = mi.ScalarTransform4f().look_at([0, 0, view.distance], [0, 0, 0], [0, 1, 0])
+        sensor = {
+            "type": "orthographic", "film": film,
+            "to_world": placed @ mi.ScalarTransform4f().scale([half_wide, half_wide, 1.0]),
+        }
+    integrator = mi.load_dict({"type": "path", "max_depth": 4, "hide_emitters": True})
+    picture = np.asarray(
+        mi.render(surface.scene, sensor=mi.load_dict(sensor), integrator=integrator, spp=samples, seed=seed)
+    )
+    colour, covered = picture[..., :3], picture[..., 3:4]
+    return np.asarray(colour + (1.0 - covered) * background, dtype=np.float32)

@@ -32,9 +32,14 @@ def test_the_temporary_file_lies_beside_with_the_same_suffix(tmp_path):
 @pytest.mark.parametrize("failure", [ValueError, KeyboardInterrupt])
 def test_a_failure_in_the_block_keeps_the_old_file(tmp_path, failure):
     (tmp_path / "a").write_text("old")
-    with pytest.raises(failure), atomic(tmp_path / "a") as temporary:
-        temporary.write_text("half")
-        raise failure
+
+    def fail_half_way():
+        with atomic(tmp_path / "a") as temporary:
+            temporary.write_text("half")
+            raise failure
+
+    with pytest.raises(failure):
+        fail_half_way()
     assert (tmp_path / "a").read_text() == "old"
     assert names(tmp_path) == ["a"]
 
@@ -44,7 +49,7 @@ def test_a_full_disk_is_one_sentence_and_keeps_the_old_file(tmp_path):
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (4096, limits[1]))  # the system's own "no more"
     try:
-        with pytest.raises(InputError, match="Cannot write .*too large"):
+        with pytest.raises(InputError, match=r"Cannot write .*too large"):
             write_bytes(tmp_path / "a", bytes(100_000))
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)

@@ -30,7 +30,10 @@ def reduce_by_definition(image):
     """REDUCE pixel by pixel from its sum, with the border reflected about the border pixel."""
     w = np.array([1, 4, 6, 4, 1]) / 16
     h, v = image.shape
-    at = lambda i, n: abs(i) if i < n else 2 * (n - 1) - i  # noqa: E731
+
+    def at(i, n):
+        return abs(i) if i < n else 2 * (n - 1) - i
+
     out = np.zeros(((h + 1) // 2, (v + 1) // 2))
     for y in range(out.shape[0]):
         for x in range(out.shape[1]):
@@ -61,7 +64,8 @@ def test_coarse_mask_pixel_is_true_exactly_if_no_false_pixel_reaches_it():
     mask = rng.random((33, 40)) > 0.02
     masks = masked_pyramid(mask, 3)
     assert [m.shape for m in masks] == [(33, 40), (17, 20), (9, 10)]
-    # A pixel is touched by a hole exactly if the pyramid of the holes is not zero there (all weights are positive).
+    # A pixel is touched by a hole exactly if the pyramid of the holes is not zero there (all weights are
+    # positive).
     for kept, hole in zip(masks, gaussian_pyramid(~mask, 3), strict=True):
         np.testing.assert_array_equal(kept, hole == 0)
     assert 0 < masks[1].sum() < masks[1].size

@@ -17,7 +17,10 @@ from voldetail.image import load_photo, save_image, to_linear
 
 SIZE = (40, 48)
 FUZZ = settings(
-    max_examples=150, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=150,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 ORIENTATION = 0x0112
 
@@ -36,7 +39,9 @@ def deep_png(values) -> bytes:
     height, width, channels = values.shape
     rows = values.astype(">u2").view(np.uint8).reshape(height, -1)
     lines = [b"\0" + rows[0].tobytes()]
-    lines += [b"\2" + (rows[i] - rows[i - 1]).tobytes() if i % 2 else b"\0" + rows[i].tobytes() for i in range(1, height)]
+    lines += [
+        b"\2" + (rows[i] - rows[i - 1]).tobytes() if i % 2 else b"\0" + rows[i].tobytes() for i in range(1, height)
+    ]
     colour_type = {1: 0, 2: 4, 3: 2, 4: 6}[channels]
     header = chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 16, colour_type, 0, 0, 0))
     return b"\x89PNG\r\n\x1a\n" + header + chunk(b"IDAT", zlib.compress(b"".join(lines))) + chunk(b"IEND", b"")
@@ -125,9 +130,7 @@ def test_float_tiff_is_linear(tmp_path, dtype, options):
     stored = np.moveaxis(values, -1, 0) if "planarconfig" in options else values
     tifffile.imwrite(tmp_path / "a.tif", stored, photometric="rgb", **options)
     np.testing.assert_array_equal(load_photo(tmp_path / "a.tif").pixels, values.astype(np.float32))
-    np.testing.assert_allclose(
-        load_photo(tmp_path / "a.tif", encoding="srgb").pixels, to_linear(values), rtol=1e-5
-    )
+    np.testing.assert_allclose(load_photo(tmp_path / "a.tif", encoding="srgb").pixels, to_linear(values), rtol=1e-5)
 
 
 @pytest.mark.parametrize("compression", ["DWAB", "DWAA", "PIZ", "ZIP", "RLE", "B44", "PXR24"])
@@ -171,7 +174,7 @@ def test_damaged_exr_is_one_sentence_and_the_library_says_nothing(tmp_path, rgb,
     data = (tmp_path / "a.exr").read_bytes()
     for wrong in (data[:-1], data[:400], data[:100], data[:-200] + bytes(200)):
         (tmp_path / "a.exr").write_bytes(wrong)
-        with pytest.raises(InputError, match="photo .*a.exr"):
+        with pytest.raises(InputError, match=r"photo .*a\.exr"):
             load_photo(tmp_path / "a.exr")
     assert capfd.readouterr() == ("", "")
 
@@ -257,11 +260,12 @@ def test_too_small_is_refused_and_the_smallest_is_not(tmp_path, shape):
 
 @pytest.mark.parametrize("width", [10_001, 60_000, 2**31 - 1])
 def test_over_100_megapixels_is_refused_from_the_header(tmp_path, width):
-    # The header announces it; there is no pixel, so that a decoder that begins would complain of something else.
+    # The header announces it; there is no pixel, so that a decoder that begins would complain of something
+    # else.
     header = chunk(b"IHDR", struct.pack(">IIBBBBB", width, 10_000, 8, 2, 0, 0, 0))
     png = b"\x89PNG\r\n\x1a\n" + header + chunk(b"IDAT", zlib.compress(b"")) + chunk(b"IEND", b"")
     (tmp_path / "a.png").write_bytes(png)
-    with pytest.raises(InputError, match="100"):
+    with pytest.raises(InputError, match=r"100 allowed|100 megapixels allowed"):
         load_photo(tmp_path / "a.png")
 
 
@@ -279,7 +283,7 @@ def test_over_100_megapixels_exr_and_tiff(tmp_path):
     at = at if at >= 0 else data.index(struct.pack("<HHI", 257, 3, 1))
     data[at + 8 : at + 12] = struct.pack("<I", 40_000)
     (tmp_path / "a.tif").write_bytes(data)
-    with pytest.raises(InputError, match="megapixels"):
+    with pytest.raises(InputError, match=r"40000 = .* megapixels, more than|40000 x .* megapixels, more than"):
         load_photo(tmp_path / "a.tif")
 
 
@@ -361,22 +365,38 @@ def files(tmp_path_factory):
     return valid_files(tmp_path_factory)
 
 
-def photo_or_sentence(path):
+def check_photo_or_sentence(path):
     """Load; either it is a usable photo, or InputError; whatever else is raised fails the test."""
+    sentence = photo = None
     try:
         photo = load_photo(path)
     except InputError as error:
-        assert str(path) in str(error)
-        assert "\n" not in str(error)
-        return None
-    assert photo.pixels.shape[2] == 3
-    assert np.isfinite(photo.pixels).all()
-    assert photo.pixels.min() >= 0
-    return photo
+        sentence = str(error)
+    if photo is None:
+        assert str(path) in sentence
+        assert "\n" not in sentence
+    else:
+        assert photo.pixels.shape[2] == 3
+        assert np.isfinite(photo.pixels).all()
+        assert photo.pixels.min() >= 0
 
 
-MAGICS = [b"", b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff\xe0", b"II*\0\x08\0\0\0", b"MM\0*\0\0\0\x08", b"RIFF    WEBP"]
-MAGICS += [b"\x76\x2f\x31\x01\x02\0\0\0", b"GIF89a", b"BM", b"P6 40 40 255\n", b"#?RADIANCE\n", b"II+\0\x08\0\0\0"]
+MAGICS = [
+    b"",
+    b"\x89PNG\r\n\x1a\n",
+    b"\xff\xd8\xff\xe0",
+    b"II*\0\x08\0\0\0",
+    b"MM\0*\0\0\0\x08",
+    b"RIFF    WEBP",
+]
+MAGICS += [
+    b"\x76\x2f\x31\x01\x02\0\0\0",
+    b"GIF89a",
+    b"BM",
+    b"P6 40 40 255\n",
+    b"#?RADIANCE\n",
+    b"II+\0\x08\0\0\0",
+]
 
 
 @FUZZ
@@ -388,7 +408,7 @@ MAGICS += [b"\x76\x2f\x31\x01\x02\0\0\0", b"GIF89a", b"BM", b"P6 40 40 255\n", b
 def test_arbitrary_bytes_never_raise_anything_else(tmp_path, start, rest, suffix):
     path = tmp_path / f"fuzz.{suffix}"
     path.write_bytes(start + rest)
-    photo_or_sentence(path)
+    check_photo_or_sentence(path)
 
 
 @settings(FUZZ, max_examples=400)
@@ -404,7 +424,7 @@ def test_corrupted_files_never_raise_anything_else(tmp_path, files, data):
         content = content[: data.draw(st.integers(1, len(content)))]
     path = tmp_path / f"fuzz-{name}"
     path.write_bytes(content)
-    photo_or_sentence(path)
+    check_photo_or_sentence(path)
 
 
 @settings(FUZZ, max_examples=40)

@@ -79,7 +79,7 @@ def test_empty_is_refused(tmp_path, value):
 
 def test_all_white_is_all_and_all_grey_is_refused(tmp_path):
     assert load_mask(save(tmp_path / "m.png", np.full(SHAPE, 255, dtype=np.uint8)), SHAPE).all()
-    with pytest.raises(InputError, match="not black and white: 100.0 %"):
+    with pytest.raises(InputError, match=r"not black and white: 100\.0 %"):
         load_mask(save(tmp_path / "m.png", np.full(SHAPE, 128, dtype=np.uint8)), SHAPE)
 
 
@@ -90,5 +90,5 @@ def test_transparent_pixels_are_not_used(tmp_path, disc):
 
 
 def test_a_missing_mask_is_called_a_mask(tmp_path):
-    with pytest.raises(InputError, match="The mask .* does not exist"):
+    with pytest.raises(InputError, match=r"The mask .* does not exist"):
         load_mask(tmp_path / "m.png", SHAPE)

@@ -17,10 +17,32 @@ from voldetail.scene.meshes import load_mesh, normalise
 from voldetail.scene.topology import consistent_winding, signed_volume, smooth_normals
 
 FUZZ = settings(
-    max_examples=200, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=200,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 CUBE = trimesh.creation.box()
 BALL = trimesh.creation.icosphere(subdivisions=3)
+POINT_PLY = """ply
+format ascii 1.0
+element vertex 1
+property float x
+property float y
+property float z
+end_header
+0 0 0
+"""
+LARGE_PLY = b"""ply
+format binary_little_endian 1.0
+element vertex 3
+property float x
+property float y
+property float z
+element face 5000001
+property list uchar int vertex_indices
+end_header
+"""
 WRITABLE = ["obj", "ply", "stl", "off", "glb"]
 
 
@@ -132,9 +154,9 @@ def test_a_needle_without_area_is_degenerate(tmp_path):
 
 
 def test_only_degenerate_faces_are_refused(tmp_path):
-    with pytest.raises(InputError, match="All 2 faces .* degenerate"):
+    with pytest.raises(InputError, match=r"All 2 faces .* degenerate"):
         load_mesh(save_obj(tmp_path / "a.obj", [[0, 0, 0], [1, 1, 1], [2, 2, 2]], [[0, 1, 2], [0, 0, 1]]))
-    with pytest.raises(InputError, match="degenerate"):
+    with pytest.raises(InputError, match=r"All 1 faces .* are degenerate"):
         load_mesh(save_obj(tmp_path / "b.obj", [[5, 5, 5]] * 3, [[0, 1, 2]]))
 
 
@@ -179,8 +201,7 @@ def test_coordinates_that_overflow_are_refused_and_tiny_ones_work(tmp_path):
         ("a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n", "damaged|does not exist"),
         ("a.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "no faces|damaged"),
         ("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", "damaged|does not exist"),
-        ("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-         "property float z\nend_header\n0 0 0\n", "no faces"),
+        ("a.ply", POINT_PLY, "no faces"),
         ("a.stl", "hello", "damaged|no faces"),
         ("a.glb", "glTF", "damaged"),
         ("a.gltf", "[]", "damaged|no faces"),
@@ -193,7 +214,9 @@ def test_what_holds_no_surface_is_refused(tmp_path, name, content, words):
         load_mesh(tmp_path / name)
 
 
-@pytest.mark.parametrize("name", ["a.pkl", "a.npz", "a.dict", "a.zip", "a.3mf", "a.dae", "a.step", "a.json", "a", "a.xyz"])
+@pytest.mark.parametrize(
+    "name", ["a.pkl", "a.npz", "a.dict", "a.zip", "a.3mf", "a.dae", "a.step", "a.json", "a", "a.xyz"]
+)
 def test_other_suffixes_are_refused_before_the_file_is_opened(tmp_path, name):
     with pytest.raises(InputError, match=r"suffix .*\.obj, \.ply, \.stl, \.off, \.glb, \.gltf"):
         load_mesh(tmp_path / name)  # the file does not exist: that would be another sentence
@@ -210,8 +233,7 @@ def test_missing_and_folder_are_refused(tmp_path):
 @pytest.mark.parametrize(
     ("name", "content"),
     [
-        ("a.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-         b"property float z\nelement face 5000001\nproperty list uchar int vertex_indices\nend_header\n"),
+        ("a.ply", LARGE_PLY),
         ("a.stl", bytes(80) + struct.pack("<I", 5_000_001) + bytes(50)),
         ("a.off", b"OFF\n# a comment\n3 5000001 0\n"),
         ("a.gltf", json.dumps({"asset": {"version": "2.0"}, "accessors": [{"count": 15_000_003}]}).encode()),
@@ -281,7 +303,12 @@ def test_gltf_reads_its_buffer_inside_its_folder_only(tmp_path):
     (folder / "a.gltf").write_text(gltf("my%20data.bin", len(triangle)))
     (folder / "my data.bin").write_bytes(triangle.replace(struct.pack("<f", 1), struct.pack("<f", 2)))
     assert load_mesh(folder / "a.gltf").sha256 not in hashes  # the buffer counts
-    for uri in ("../out.bin", str(tmp_path / "out.bin"), "http://example.com/out.bin", "file:///etc/hostname"):
+    for uri in (
+        "../out.bin",
+        str(tmp_path / "out.bin"),
+        "http://example.com/out.bin",
+        "file:///etc/hostname",
+    ):
         (folder / "a.gltf").write_text(gltf(uri, len(triangle)))
         with pytest.raises(InputError, match="outside its own folder"):
             load_mesh(folder / "a.gltf")
@@ -354,22 +381,32 @@ def files(tmp_path_factory):
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-def mesh_or_sentence(path):
+def check_mesh_or_sentence(path):
     """Load; either it is a usable mesh, or InputError; whatever else is raised fails the test."""
+    sentence = mesh = None
     try:
         mesh = load_mesh(path)
     except InputError as error:
-        assert str(path) in str(error)
-        assert "\n" not in str(error)
-        return
-    assert len(mesh.faces) > 0
-    assert mesh.faces.min() == 0
-    assert mesh.faces.max() == len(mesh.vertices) - 1
-    assert np.isfinite(mesh.vertices).all()
-    np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=1), 1, atol=1e-9)
+        sentence = str(error)
+    if mesh is None:
+        assert str(path) in sentence
+        assert "\n" not in sentence
+    else:
+        assert len(mesh.faces) > 0
+        assert mesh.faces.min() == 0
+        assert mesh.faces.max() == len(mesh.vertices) - 1
+        assert np.isfinite(mesh.vertices).all()
+        np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=1), 1, atol=1e-9)
 
 
-STARTS = [b"", b"ply\nformat ascii 1.0\n", b"solid a\nfacet ", b"OFF\n3 1 0\n", b"glTF\x02\0\0\0", b"{\"meshes\":"]
+STARTS = [
+    b"",
+    b"ply\nformat ascii 1.0\n",
+    b"solid a\nfacet ",
+    b"OFF\n3 1 0\n",
+    b"glTF\x02\0\0\0",
+    b'{"meshes":',
+]
 STARTS += [b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", b"ply\nformat binary_little_endian 1.0\nelement face 9\n"]
 
 
@@ -378,7 +415,7 @@ STARTS += [b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", b"ply\nformat binary_little_
 def test_arbitrary_bytes_never_raise_anything_else(tmp_path, start, rest, suffix):
     path = tmp_path / f"fuzz{suffix}"
     path.write_bytes(start + rest)
-    mesh_or_sentence(path)
+    check_mesh_or_sentence(path)
 
 
 @settings(FUZZ, max_examples=400)
@@ -396,7 +433,7 @@ def test_corrupted_files_never_raise_anything_else(tmp_path, files, data):
         content = content[: data.draw(st.integers(1, len(content)))]
     path = tmp_path / f"fuzz-{name}"
     path.write_bytes(content)
-    mesh_or_sentence(path)
+    check_mesh_or_sentence(path)
 
 
 @settings(FUZZ, max_examples=60)
@@ -408,7 +445,9 @@ def test_corrupted_files_never_raise_anything_else(tmp_path, files, data):
 def test_round_trips_keep_every_sound_triangle(tmp_path, vertices, seed, suffix):
     points = np.array(vertices, dtype=float)
     faces = np.random.default_rng(seed).integers(0, len(points), (10, 3))
-    areas = np.linalg.norm(np.cross(points[faces[:, 1]] - points[faces[:, 0]], points[faces[:, 2]] - points[faces[:, 0]]), axis=1)
+    areas = np.linalg.norm(
+        np.cross(points[faces[:, 1]] - points[faces[:, 0]], points[faces[:, 2]] - points[faces[:, 0]]), axis=1
+    )
     expected = {frozenset(map(tuple, points[f])) for f, area in zip(faces, areas, strict=True) if area > 0}
     path = save(tmp_path / f"a.{suffix}", points, faces)
     if not expected:

@@ -51,6 +51,7 @@ class Objective:
             return Evaluation(detail, UNUSABLE, np.zeros_like(self.target.luminance), mask)
         found = solve(self.target.luminance, parts, mask, specular=self.specular)
         picture = parts.luminance(found.ambient, found.diffuse, found.specular, found.shininess)
+        picture = np.minimum(picture, self.target.white)
         detail = detail.model_copy(
             update={
                 "reflectance": Reflectance(

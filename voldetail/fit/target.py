@@ -9,21 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.errors import InputError
+from voldetail.fit.zone import default_zone
 from voldetail.image import Photo, load_mask, load_photo, luminance, resize
 from voldetail.metric import Descriptor, describe, distance
 from voldetail.scene.lamp import Lamp, lamp_of
 from voldetail.scene.setup import SKIMAGE_PREFIX, Setup
 from voldetail.scene.view import Zone
 
-DEFAULT_ZONE = 2
-"""The default zone is at most this many times the working resolution across: enough repetitions of the texture, and at
-most this much of its finest detail lost by resampling."""
-
-
 @dataclass(frozen=True)
 class Target:
     """What a rendering is compared with.
 
+    white: the luminance at which the photo burns out; renderings are clipped there, as the camera did.
     pixels (H, W, 3) and luminance (H, W): the zone, linear, at working resolution. mask (H, W). shape: rows and columns
     of the whole photo; zone in its pixels. photo_halves: distance between the two halves of the zone.
     """
@@ -38,6 +35,7 @@ class Target:
     tint: tuple[float, float, float]
     descriptor: Descriptor
     photo_halves: float | None
+    white: float
 
     def reduced(self, metric: str) -> Target:
         """Return the same target at half the resolution, for the coarse pass."""
@@ -49,7 +47,7 @@ class Target:
         mask = share > 0.999
         return Target(
             self.photo, pixels, light, mask, self.shape, self.zone, self.lamp, self.tint,
-            describe(light, mask, metric=metric), None,
+            describe(light, mask, metric=metric), None, self.white,
         )
 
 
@@ -72,7 +70,9 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
     photo = photo or load_photo_of(setup)
     rows, columns = photo.pixels.shape[:2]
     mask = load_mask(setup.mask, (rows, columns)) if setup.mask else np.ones((rows, columns), dtype=bool)
-    zone = setup.photo.zone or default_zone(mask, setup.photo.resolution)
+    if photo.opaque is not None:
+        mask = mask & photo.opaque
+    zone = setup.photo.zone or default_zone(luminance(photo.pixels), mask, setup.photo.resolution)
     x, y, w, h = zone
     if x + w > columns or y + h > rows:
         raise InputError(
@@ -95,16 +95,8 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
         photo=photo, pixels=pixels, luminance=light, mask=used, shape=(rows, columns), zone=zone,
         lamp=lamp_of(setup.light, luminance(photo.pixels)), tint=(float(tint[0]), float(tint[1]), float(tint[2])),
         descriptor=descriptor, photo_halves=_halves(light, used, setup.fit.metric),
+        white=max(1.0, float(light.max())),
     )
-
-
-def default_zone(mask: NDArray[np.bool_], resolution: int) -> Zone:
-    """Return a square of at most DEFAULT_ZONE resolutions across, in the middle of the mask's bounding box."""
-    rows, columns = np.any(mask, axis=1), np.any(mask, axis=0)
-    top, bottom = int(np.argmax(rows)), len(rows) - int(np.argmax(rows[::-1]))
-    left, right = int(np.argmax(columns)), len(columns) - int(np.argmax(columns[::-1]))
-    side = min(bottom - top, right - left, DEFAULT_ZONE * resolution)
-    return (left + right - side) // 2, (top + bottom - side) // 2, side, side
 
 
 def _halves(light: NDArray[np.float32], mask: NDArray[np.bool_], metric: str) -> float | None:

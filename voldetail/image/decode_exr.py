@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import Imath
+import Imath  # type: ignore[import-untyped]  # comes with OpenEXR
 import numpy as np
 import OpenEXR
 from numpy.typing import NDArray
@@ -21,8 +21,9 @@ _FLAT = (OpenEXR.scanlineimage, OpenEXR.tiledimage)
 
 def decode_exr(path: Path, what: str) -> Samples:
     """Decode a flat OpenEXR file (channels R, G, B or Y, any compression), its size checked first."""
-    # Two classes of the library, one for each half of the work. On damaged files InputFile crashes in its header(),
-    # where File raises; and File prints what is wrong with the pixels and goes on without them, where InputFile raises.
+    # Two classes of the library, one for each half of the work. On damaged files InputFile crashes in its
+    # header(), where File raises; and File prints what is wrong with the pixels and goes on without them,
+    # where InputFile raises.
     with _stderr_closed():
         parts = OpenEXR.File(str(path), header_only=True).parts
         header = parts[0].header
@@ -37,8 +38,6 @@ def decode_exr(path: Path, what: str) -> Samples:
             names = ", ".join(sorted(channels)[:8]) or "none"
             raise InputError(f"The {what} {path} has the channels {names!r}; save it with R, G and B, or Y alone.")
         file: Any = OpenEXR.InputFile(str(path))
-        if not file.isComplete():
-            raise InputError(f"The {what} {path} is cut short: rows of pixels are missing; save or copy it again.")
         planes = [_plane(file, name, (height, width), what, path) for name in wanted]
         alpha = _plane(file, "A", (height, width), what, path) if "A" in channels else None
         file.close()

@@ -45,7 +45,8 @@ def decode_pillow(path: Path, what: str) -> Samples:
 
 @contextmanager
 def _open(path: Path) -> Iterator[Image.Image]:
-    # A stream and not the name: by name, Pillow maps uncompressed TIFFs into memory and garbles those on their side.
+    # A stream and not the name: by name, Pillow maps uncompressed TIFFs into memory and garbles those on
+    # their side.
     with open(path, "rb") as stream, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a large picture is our own check's affair, odd metadata nobody's
         with Image.open(stream, formats=FORMATS) as picture:
@@ -64,8 +65,8 @@ def _sixteen_bits(
 ) -> tuple[NDArray[np.uint16], NDArray[np.float32] | None]:
     """Decode 16-bit colour, which Pillow cuts to its high bytes: decode twice, the second time for the low bytes.
 
-    Naming the other byte order to the unpacker makes it keep the other byte. Grey with alpha has no such twin, but
-    its four bytes a pixel pass as RGBA.
+    Naming the other byte order to the unpacker makes it keep the other byte. Grey with alpha has no such
+    twin, but its four bytes a pixel pass as RGBA.
     """
     if rawmode == "LA;16B":
         high.tile = [tile._replace(args="RGBA") for tile in high.tile]
@@ -124,7 +125,7 @@ def _deep_grey(values: NDArray[Any], what: str, path: Path) -> NDArray[Any]:
 def _orientation(picture: Image.Image) -> int:
     try:
         return int(picture.getexif().get(_ORIENTATION_TAG, 1))
-    except Exception:  # noqa: BLE001 - damaged metadata around good pixels: any parser error means "no orientation"
+    except Exception:
         return 1
 
 
@@ -135,6 +136,6 @@ def _profile(picture: Image.Image) -> list[str]:
         return []
     try:
         name = ImageCms.getProfileDescription(ImageCms.ImageCmsProfile(BytesIO(profile))).strip()
-    except Exception:  # noqa: BLE001 - damaged metadata around good pixels
+    except Exception:
         name = "unreadable"
     return [] if "srgb" in name.lower() else [f"colour profile ignored ({name[:60]}), read as sRGB"]

@@ -30,9 +30,9 @@ _READ = "PNG, JPEG, TIFF, WebP, AVIF, BMP, PPM, GIF and OpenEXR"
 class Photo:
     """A photograph as linear light.
 
-    `pixels` (H, W, 3) float32, row 0 on top, 1 = the file's white, never negative, NaN or infinite; `sha256` of the
-    file; `notes`, what was changed in reading it; `opaque` (H, W) bool, False where the file is fully transparent and
-    so says nothing, or None if all of it is to be used.
+    `pixels` (H, W, 3) float32, row 0 on top, 1 = the file's white, never negative, NaN or infinite; `sha256`
+    of the file; `notes`, what was changed in reading it; `opaque` (H, W) bool, False where the file is fully
+    transparent and so says nothing, or None if all of it is to be used.
     """
 
     pixels: NDArray[np.float32]
@@ -44,9 +44,10 @@ class Photo:
 def load_photo(path: str | Path, *, encoding: Encoding = "auto") -> Photo:
     """Read a photograph: PNG, JPEG, TIFF, WebP, AVIF, BMP, PPM, GIF or OpenEXR, recognised by content.
 
-    `encoding` says what the numbers mean: "srgb", "linear", or "auto", by which integers are sRGB and floating-point
-    numbers linear. Grey becomes three equal channels, CMYK and palettes RGB; alpha is dropped and EXIF's rotation
-    applied. Raises InputError for anything that is not a photograph of 32 x 32 pixels to 100 megapixels.
+    `encoding` says what the numbers mean: "srgb", "linear", or "auto", by which integers are sRGB and
+    floating-point numbers linear. Grey becomes three equal channels, CMYK and palettes RGB; alpha is dropped
+    and EXIF's rotation applied. Raises InputError for anything that is not a photograph of 32 x 32 pixels to
+    100 megapixels.
     """
     path = readable(path, "photo", MAX_BYTES)
     samples = _decode(path, "photo")

@@ -16,9 +16,9 @@ _COLOUR = 0.1  # channels that differ by more are a colour; JPEG tints grey by l
 def load_mask(path: str | Path, shape: tuple[int, int]) -> NDArray[np.bool_]:
     """Read a mask for a photo of `shape` = (height, width): True where the file is white and not transparent.
 
-    A file of two values of which one is 0 is taken by them; otherwise up to 2 % of the pixels may lie between black
-    and white (smoothed edges) and are cut at half. Raises InputError for another size, for a mask that is empty, and
-    for a picture that is not black and white.
+    A file of two values of which one is 0 is taken by them; otherwise up to 2 % of the pixels may lie between
+    black and white (smoothed edges) and are cut at half. Raises InputError for another size, for a mask that
+    is empty, and for a picture that is not black and white.
     """
     samples = load_samples(path, "mask")
     values = samples.values

@@ -8,14 +8,16 @@ from scipy import ndimage
 
 # Burt and Adelson 1983, "The Laplacian pyramid as a compact image code": the 5-tap binomial kernel.
 _KERNEL = np.array([1, 4, 6, 4, 1], dtype=np.float32) / 16
-# "mirror" reflects about the centre of the border pixel (d c b | a b c d): no pixel counts twice at the border.
+# "mirror" reflects about the centre of the border pixel (d c b | a b c d): no pixel counts twice at the
+# border.
 _BORDER = "mirror"
 
 
 def gaussian_pyramid(image: NDArray[Any], levels: int) -> list[NDArray[np.float32]]:
     """Return `levels` images, the finest first: each is REDUCE of the one before (Burt and Adelson 1983, eq. 1).
 
-    `image` is (H, W); level i has ceil(H / 2^i) x ceil(W / 2^i) pixels, and its pixel (0, 0) lies on that of level 0.
+    `image` is (H, W); level i has ceil(H / 2^i) x ceil(W / 2^i) pixels, and its pixel (0, 0) lies on that of
+    level 0.
     """
     pyramid = [np.asarray(image, dtype=np.float32)]
     for _ in range(levels - 1):

@@ -10,8 +10,8 @@ from PIL import Image
 def resize(image: NDArray[Any], size: tuple[int, int]) -> NDArray[np.float32]:
     """Resample an image (H, W) or (H, W, C) to `size` = (height, width), float32, within the range of its values.
 
-    Shrinking uses a Hamming-windowed sinc stretched over the pixels that merge (no aliasing, no negative lobe), and
-    enlarging a cubic. Constant images stay constant. Raises ValueError for an empty size.
+    Shrinking uses a Hamming-windowed sinc stretched over the pixels that merge (no aliasing, no negative
+    lobe), and enlarging a cubic. Constant images stay constant. Raises ValueError for an empty size.
     """
     source = np.asarray(image, dtype=np.float32)
     height, width = size

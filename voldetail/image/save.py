@@ -52,8 +52,8 @@ WRITERS: dict[str, Callable[[Path, NDArray[Any]], None]] = {
 def save_image(path: str | Path, linear: NDArray[Any]) -> None:
     """Save a linear image (H, W) or (H, W, 3) in the format that the suffix of `path` names, atomically.
 
-    `.png` and `.jpg` hold 8-bit sRGB (clipped), `.exr` linear 32-bit float. Raises InputError for another suffix or
-    where nothing can be written, VoldetailError for an image with NaN or infinities.
+    `.png` and `.jpg` hold 8-bit sRGB (clipped), `.exr` linear 32-bit float. Raises InputError for another
+    suffix or where nothing can be written, VoldetailError for an image with NaN or infinities.
     """
     path = Path(path)
     check_suffix(path)

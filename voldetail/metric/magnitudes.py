@@ -72,7 +72,8 @@ def _standardised(layers: Layers, level: int) -> tuple[Array, Allowed]:
 
 
 def _correlations(one: Array, other: Array, allowed: Allowed) -> Array:
-    product: Array = one.reshape(len(one), -1) @ other.reshape(len(other), -1).T
+    """Mean products of all pairs of maps, (17, 17); row by row, so that no product is large (see `filters`)."""
+    product: Array = np.matmul(one.transpose(1, 0, 2), other.transpose(1, 2, 0)).sum(axis=0)
     return product / np.float32(max(int(allowed.sum()), 1))
 
 

@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from voldetail.errors import InputError
 from voldetail.metric.layers import LEVEL_NAMES, Layers
 from voldetail.metric.marginals import band
 from voldetail.metric.quantiles import Array, Parts, quantile_functions, spread, wasserstein
@@ -37,11 +38,15 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
     for level, (name, image) in enumerate(zip(LEVEL_NAMES, layers.images, strict=True)):
         stride = 2 if level < 2 else 1
         patches = sliding_window_view(band(image), (PATCH, PATCH))[::stride, ::stride]
-        rows, columns = patches.shape[:2]
-        projected = patches.reshape(rows * columns, -1) @ _directions().T
-        picked = layers.pick(projected.T.reshape(DIRECTIONS, rows, columns), level, PATCH + 4, stride)
-        if picked.shape[1]:
-            found[name] = quantile_functions(picked)
+        # Row by row: no product is large (see `filters`).
+        projected = np.matmul(patches.reshape(*patches.shape[:2], -1), _directions().T)
+        picked = layers.pick(projected.transpose(2, 0, 1), level, PATCH + 4, stride)
+        if not picked.shape[1]:
+            raise InputError(
+                f"the mask is too small for the metric 'patches', which needs {PATCH + 4} x {PATCH + 4} pixels of "
+                f"pyramid level {level} inside it: paint a larger zone or use another metric"
+            )
+        found[name] = quantile_functions(picked)
     return found
 
 

@@ -49,7 +49,8 @@ def read_triangles(path: Path) -> Triangles:
         buffers = _buffers(data, suffix, path)
         logging.getLogger("trimesh").setLevel(logging.CRITICAL)  # what it says of damaged files is not for our user
         with np.errstate(all="ignore"):
-            # From memory, with a resolver that holds the buffers and nothing else: no material, no picture, no net.
+            # From memory, with a resolver that holds the buffers and nothing else: no material, no picture,
+            # no net.
             scene = trimesh.load_scene(
                 BytesIO(data), file_type=suffix[1:], resolver=buffers, process=False, skip_materials=True
             )
@@ -78,7 +79,8 @@ def _announced_faces(data: bytes, suffix: str) -> int:
         found = re.match(rb"\s*OFF\s+(?:#[^\n]*\s+)*\d+\s+(\d{1,18})", data[:_HEADER_BYTES])
         return int(found[1]) if found else 0
     if suffix in (".glb", ".gltf"):
-        # An accessor without a buffer is as many zeros as it asks for, so the largest count bounds the memory.
+        # An accessor without a buffer is as many zeros as it asks for, so the largest count bounds the
+        # memory.
         accessors = _gltf_tree(data, suffix).get("accessors", [])
         return max((int(accessor.get("count", 0)) for accessor in accessors), default=0) // 3
     return 0

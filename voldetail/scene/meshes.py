@@ -28,10 +28,10 @@ _LARGEST = 1e30  # of a coordinate: beyond it areas and the renderer's 32-bit fl
 class Mesh:
     """A triangle mesh with smooth outward normals.
 
-    `vertices` (V, 3) and unit `normals` (V, 3) float64, `faces` (F, 3) int64, counter-clockwise from outside; `uv`
-    (V, 2) or None. With `uv`, the vertices along seams are doubled, but doubles have the same position and the same
-    normal, so that displacement opens no gap. `watertight` if every edge joins two faces; `notes` say what was
-    repaired or is odd; `sha256` of the file.
+    `vertices` (V, 3) and unit `normals` (V, 3) float64, `faces` (F, 3) int64, counter-clockwise from outside;
+    `uv` (V, 2) or None. With `uv`, the vertices along seams are doubled, but doubles have the same position
+    and the same normal, so that displacement opens no gap. `watertight` if every edge joins two faces;
+    `notes` say what was repaired or is odd; `sha256` of the file.
     """
 
     vertices: NDArray[np.float64]
@@ -46,9 +46,9 @@ class Mesh:
 def load_mesh(path: str | Path) -> Mesh:
     """Read a mesh from an OBJ, PLY, STL, OFF or glTF file of at most 5 million faces.
 
-    Degenerate and repeated faces are dropped, faces that disagree with their neighbours turned, and a closed mesh that is inside
-    out turned as a whole, each with a note. Raises InputError for a file that cannot be read, and for a mesh with no
-    face, with NaN or infinite vertices, or with degenerate faces only.
+    Degenerate and repeated faces are dropped, faces that disagree with their neighbours turned, and a closed
+    mesh that is inside out turned as a whole, each with a note. Raises InputError for a file that cannot be
+    read, and for a mesh with no face, with NaN or infinite vertices, or with degenerate faces only.
     """
     path = Path(path)
     read = read_triangles(path)

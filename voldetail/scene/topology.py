@@ -15,7 +15,8 @@ Faces = NDArray[np.int64]
 def weld(vertices: Vertices) -> tuple[NDArray[np.int64], int]:
     """Return for each vertex (V, 3) the number of its position, and how many positions there are.
 
-    Only exactly equal coordinates share a position: duplicates at seams and in STL files are copies of one number.
+    Only exactly equal coordinates share a position: duplicates at seams and in STL files are copies of one
+    number.
     """
     if len(vertices) == 0:
         return np.zeros(0, dtype=np.int64), 0
@@ -55,8 +56,9 @@ def consistent_winding(faces: Faces) -> tuple[Faces, int]:
     """Turn faces so that neighbours agree on which side is the front; return the faces and how many were turned.
 
     Each face is two nodes of a graph, as it is and turned; an edge of two faces joins the nodes that agree. A
-    component of that graph is one way to wind a connected part, and the one that turns fewer faces is taken. Parts
-    that have no consistent winding (a Moebius strip) stay as they are.
+    component of that graph is one way to wind a connected part, and the one that turns fewer faces is taken.
+    Parts that have no consistent winding (a Moebius strip) stay as they are: there both nodes of a face are
+    in one component.
     """
     found = edges(faces)
     order = np.argsort(found.number, kind="stable")
@@ -73,9 +75,9 @@ def consistent_winding(faces: Faces) -> tuple[Faces, int]:
     parts, label = csgraph.connected_components(graph, directed=False)
     kept, turned = label[:count], label[count:]
     keeps = np.bincount(kept, minlength=parts)
-    # Component c and its mirror image hold the same faces; the one with more faces as they are wins, ties by number.
+    # Component c and its mirror image hold the same faces; the one with more faces as they are wins, ties by
+    # number.
     turn = (keeps[turned] > keeps[kept]) | ((keeps[turned] == keeps[kept]) & (turned < kept))
-    turn &= turned != kept
     result = faces.copy()
     result[turn] = result[turn][:, ::-1]
     return result, int(turn.sum())
@@ -85,7 +87,10 @@ def bodies(faces: Faces, positions: int) -> int:
     """Count the parts of a mesh that share no vertex."""
     used = np.unique(faces)
     graph = sparse.coo_matrix(
-        (np.ones(2 * len(faces), dtype=np.int8), (faces[:, [0, 1]].reshape(-1), faces[:, [1, 2]].reshape(-1))),
+        (
+            np.ones(2 * len(faces), dtype=np.int8),
+            (faces[:, [0, 1]].reshape(-1), faces[:, [1, 2]].reshape(-1)),
+        ),
         shape=(positions, positions),
     )
     labels = csgraph.connected_components(graph, directed=False)[1]
@@ -107,9 +112,9 @@ def signed_volume(vertices: Vertices, faces: Faces) -> float:
 def smooth_normals(vertices: Vertices, faces: Faces) -> Vertices:
     """Return the unit normal of each vertex (V, 3): face normals weighted by the angle at the vertex.
 
-    Thuermer and Wuethrich 1998, "Computing vertex normals from polygonal facets": unlike a plain mean it does not
-    depend on how a flat part is cut into triangles. Where the normals of the faces cancel (two faces back to back) one
-    of them is taken. Every vertex must belong to a face, and no face be degenerate.
+    Thuermer and Wuethrich 1998, "Computing vertex normals from polygonal facets": unlike a plain mean it does
+    not depend on how a flat part is cut into triangles. Where the normals of the faces cancel (two faces back
+    to back) one of them is taken. Every vertex must belong to a face, and no face be degenerate.
     """
     normal = crosses(vertices, faces)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)

@@ -1,0 +1,130 @@
+"""The pictures of a fit's report: what was fitted, and the same detail under other lights, views and on other shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import binary_dilation, binary_erosion
+
+from voldetail.apply.onmesh import relight, render
+from voldetail.image import resize
+from voldetail.render import components
+from voldetail.scene.build import build
+from voldetail.scene.lamp import Lamp
+from voldetail.scene.lights_text import direction_of
+from voldetail.scene.setup import CameraSetup, Light, PhotoSetup, ProxySetup, Setup
+
+Picture = NDArray[np.float32]
+
+OTHER_LIGHTS = ((0.0, 35.0), (90.0, 35.0), (180.0, 35.0), (270.0, 35.0))
+"""Azimuth and elevation of the four other lights, in degrees: low enough to show the relief from every side."""
+
+OVERLAY_SIDE = 512
+GRAZING_TILT = -68.0
+"""Degrees by which the plane of the grazing view is tipped away from the viewer."""
+
+SHAPE_SIDE = 360
+
+
+@dataclass(frozen=True)
+class Gallery:
+    """Pictures (H, W, 3), linear.
+
+    photo: the zone at working resolution; mask (H, W): its used pixels; overlay: the whole photo with the zone, the mask
+    and the proxy drawn over it; fitted: the rendering under the photo's light; lights: captions and renderings under
+    four others; grazing: a tilted plane; sphere; mesh with its name.
+    """
+
+    photo: Picture
+    mask: NDArray[np.bool_]
+    overlay: Picture
+    fitted: Picture
+    lights: tuple[tuple[str, Picture], ...]
+    grazing: Picture
+    sphere: Picture
+    mesh: Picture
+    mesh_name: str
+
+
+def gallery(
+    result: Any, on_progress: Callable[[str], None] = lambda what: None, mesh: str | Path = "cylinder"
+) -> Gallery:
+    """Return the Gallery of a FitResult; ``mesh`` is the kind of proxy or file for its last picture."""
+    detail, setup, target = result.detail, result.setup, result.target
+    surface = build(setup, target.shape, target.zone)
+    surface.update(detail)
+
+    def under(lamp: Lamp) -> Picture:
+        parts = components(surface, lamp, subsamples=3, shininess=(detail.reflectance.shininess,))
+        return parts.colour(detail.reflectance)
+
+    on_progress("the fit and four other lights")
+    fitted = under(target.lamp)
+    lights = tuple(
+        (f"light from {_side(azimuth)}, {elevation:g}\N{DEGREE SIGN} high", under(Lamp(direction_of(azimuth, elevation))))
+        for azimuth, elevation in OTHER_LIGHTS
+    )
+    on_progress("a grazing view")
+    side = (SHAPE_SIDE, SHAPE_SIDE)
+    lamp = Light(direction=direction_of(160.0, 40.0))
+    # The relief keeps the size it has in the photo, where a proxy is 2 across; larger cells show more on a small picture.
+    scale = 1.0
+    grazing = render(
+        detail, "plane", light=lamp, scale=scale, size=side, rotation=(GRAZING_TILT, 0.0, 0.0),
+        camera=CameraSetup(kind="perspective"),
+    )
+    on_progress("a sphere")
+    sphere = render(detail, "sphere", light=lamp, scale=scale, size=side)
+    on_progress(f"a {Path(mesh).stem}")
+    other = render(detail, mesh, light=lamp, scale=scale, size=side)
+    return Gallery(
+        photo=target.pixels, mask=target.mask, overlay=overlay(setup, target), fitted=fitted, lights=lights,
+        grazing=grazing, sphere=sphere, mesh=other, mesh_name=Path(mesh).stem,
+    )
+
+
+def _side(azimuth: float) -> str:
+    return {0.0: "the right", 90.0: "above", 180.0: "the left", 270.0: "below"}[azimuth]
+
+
+def overlay(setup: Setup, target: Any) -> Picture:
+    """Return the whole photo, small, with the proxy's outline (orange), the unused part dark and the zone (white)."""
+    rows, columns = target.shape
+    factor = OVERLAY_SIDE / max(rows, columns)
+    size = (max(1, round(rows * factor)), max(1, round(columns * factor)))
+    picture = np.array(resize(target.photo.pixels, size))
+    outline, inside = _outline(setup, target.shape, size)
+    picture[~inside] *= 0.35
+    x, y, w, h = (round(v * factor) for v in target.zone)
+    window = np.zeros(size, dtype=bool)
+    window[y : y + h, x : x + w] = True
+    unused = np.zeros(size, dtype=bool)
+    part = resize(np.repeat(target.mask[..., None].astype(np.float32), 3, axis=2), (max(1, h), max(1, w)))[..., 0] < 0.5
+    part = part[: unused[y : y + h, x : x + w].shape[0], : unused[y : y + h, x : x + w].shape[1]]
+    unused[y : y + part.shape[0], x : x + part.shape[1]] = part
+    picture[unused] *= 0.35
+    picture[binary_dilation(window, iterations=2) & ~window] = (1.0, 1.0, 1.0)
+    picture[outline] = (1.0, 0.35, 0.02)
+    return picture.astype(np.float32)
+
+
+def _outline(
+    setup: Setup, shape: tuple[int, int], size: tuple[int, int]
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return (edge of the proxy in the photo, where it is) as masks of ``size``; a plane that fills it has no edge."""
+    from voldetail.scene.build import faces_camera
+
+    if faces_camera(setup):
+        return np.zeros(size, dtype=bool), np.ones(size, dtype=bool)
+    small = setup.model_copy(
+        update={"photo": PhotoSetup(path=setup.photo.path, resolution=max(size)), "proxy": ProxySetup(**dict(setup.proxy))}
+    )
+    surface = build(small, shape, None)
+    parts = components(surface, Lamp((0.0, 0.0, 1.0)), subsamples=1, shininess=())
+    inside = parts.covered[: size[0], : size[1]] > 0.5
+    return binary_dilation(inside, iterations=1) & ~binary_erosion(inside, iterations=1), inside

@@ -1,0 +1,89 @@
+"""What a report says in words: the light, the search, the inputs."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from voldetail.report.verdict import number
+
+if TYPE_CHECKING:
+    from voldetail.fit.fitter import FitResult
+    from voldetail.scene.setup import Light, Setup
+
+_SIDES = ("the right", "the upper right", "above", "the upper left", "the left", "the lower left", "below",
+          "the lower right")  # fmt: skip
+HEAD_ON = 80.0  # degrees of elevation from which a side can no longer be told
+
+
+def light_words(light: Light) -> str:
+    """The light in words, angles in degrees."""
+    if light.kind == "flash":
+        foot = ""
+        if light.foot:
+            foot = f", nearest {100 * light.foot[0]:.0f} % from the left and {100 * light.foot[1]:.0f} % from the top"
+        return f"a flash {light.height:.3g} photo widths in front of it{foot}"
+    if light.position:
+        return "a lamp at " + ", ".join(f"{v:.3g}" for v in light.position) + " scene units (right, up, to the viewer)"
+    assert light.direction is not None
+    azimuth, elevation = angles(light.direction)
+    if elevation > HEAD_ON:
+        return f"from the viewer's side, {elevation:.0f} degrees above the picture"
+    side = _SIDES[round(azimuth / 45) % 8]
+    return f"from {side} (azimuth {azimuth:.0f} degrees), {elevation:.0f} degrees above the picture"
+
+
+def angles(direction: tuple[float, float, float]) -> tuple[float, float]:
+    """Azimuth from +x counter-clockwise, 0 to 360, and elevation towards the viewer, in degrees."""
+    x, y, z = direction
+    return math.degrees(math.atan2(y, x)) % 360, math.degrees(math.atan2(z, math.hypot(x, y)))
+
+
+def duration(seconds: float) -> str:
+    """A time in words: "12 s", "3 min 05 s", "1 h 02 min"."""
+    whole = max(0, round(seconds))
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60:02d} s"
+    return f"{whole // 3600} h {whole // 60 % 60:02d} min"
+
+
+def facts(result: FitResult) -> list[tuple[str, str]]:
+    """Label and text of each fact about the photo and the search, in reading order."""
+    setup, target = result.setup, result.target
+    rows, columns = target.shape
+    x, y, width, height = target.zone
+    shown = f"{target.mask.shape[1]} x {target.mask.shape[0]}"
+    used = 100 * float(target.mask.mean())
+    masked = "" if used > 99.95 else f", {used:.0f} % of them used"
+    rate = f", {result.evaluations / result.seconds:.1f} a second" if result.seconds > 0 else ""
+    notes = f" ({'; '.join(target.photo.notes)})" if target.photo.notes else ""
+    return [
+        ("Photo", f"{setup.photo.name}, {columns} x {rows} pixels{notes}"),
+        ("Zone", f"{width} x {height} pixels at {x}, {y} from the top left; compared at {shown}{masked}"),
+        ("Light", light_words(setup.light)),
+        ("Proxy", _proxy(setup)),
+        ("Search", f"{result.evaluations} pictures compared in {duration(result.seconds)}{rate}"),
+        ("Solver", f"{setup.fit.solver}, metric {setup.fit.metric}, seed {setup.seed}; {result.status}"),
+        ("Distance", distance_words(result)),
+    ]
+
+
+def distance_words(result: FitResult) -> str:
+    """M and the two distances it is held against."""
+    floor = result.detail.noise_floor
+    text = f"M = {number(result.distance)}"
+    if floor.photo_halves is not None:
+        text += f"; the photo's halves {number(floor.photo_halves)}"
+    if floor.other_seed is not None:
+        text += f"; two seeds of the detail {number(floor.other_seed)}"
+    return text
+
+
+def _proxy(setup: Setup) -> str:
+    proxy = setup.proxy
+    name = f"the mesh {proxy.mesh.name}" if proxy.mesh else f"a {proxy.kind}"
+    if setup.camera.kind == "orthographic":
+        return f"{name}, orthographic camera"
+    return f"{name}, perspective camera with {setup.camera.field_of_view:g} degrees across"

@@ -1,0 +1,37 @@
+"""Environment maps: checked, read by Mitsuba, turned so that y is up and the picture's middle is seen from the front."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from voldetail.backend import mitsuba
+from voldetail.errors import InputError
+
+SUFFIXES = (".exr", ".hdr")
+LARGEST = 512 * 1024 * 1024
+
+
+def environment_emitter(path: Path) -> Any:
+    """Return a Mitsuba emitter for an equirectangular map.
+
+    Raises InputError for a file that is missing, too large, of another kind, unreadable, or with values that are not
+    finite and at least 0.
+    """
+    mi = mitsuba()
+    if path.suffix.lower() not in SUFFIXES:
+        raise InputError(f"The environment map {path.name} is not of a known kind: give an .exr or .hdr file.")
+    if not path.is_file():
+        raise InputError(f"There is no environment map at {path}: check the path.")
+    if path.stat().st_size > LARGEST:
+        raise InputError(f"The environment map {path.name} is larger than 512 MB: make it smaller.")
+    try:
+        bitmap = mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
+    except RuntimeError as error:
+        raise InputError(f"The environment map {path.name} cannot be read: it is damaged or not an image.") from error
+    values = np.asarray(bitmap)
+    if not np.isfinite(values).all() or values.min() < 0:
+        raise InputError(f"The environment map {path.name} holds values that are negative or not finite: mend it first.")
+    return mi.load_dict({"type": "envmap", "bitmap": bitmap})
