@@ -4,7 +4,8 @@ Under one light and a uniform sky the picture is linear in the three coefficient
 
     I = Ka A + Kd D + Ks S_n
 
-A: share of the sky that is seen, cosine-weighted; 1 on a bare plane. D: E max(0, n . l) V. S_n: the modified Phong lobe
+A: share of the sky that is seen, cosine-weighted; 1 on a bare plane. D: E max(0, n . l) V. Both carry the factor by which
+albedo varies with height and grain. S_n: the modified Phong lobe
 (n + 2) / 2 cos^n(alpha) E max(0, n . l) V, alpha between the view and the mirrored light; E irradiance over pi, V the
 visibility of the light. Sample positions are a fixed grid in each pixel: no grain, so the metric never sees any.
 """
@@ -61,12 +62,12 @@ def components(
 ) -> Components:
     """Return the unit components of the surface as it was last updated, ``subsamples`` squared samples a pixel."""
     mi = mitsuba()
-    points, normals, sky, seen = surface.look(subsamples)
+    points, normals, sky, seen, albedo = surface.look(subsamples)
     direction, distance, irradiance = lamp.at(points)
     cosine = dr.maximum(dr.dot(normals, direction), 0.0)
     lit = surface.lit(points, normals, direction, distance)
     received = dr.select(seen & lit, cosine * irradiance, 0.0)
-    view = surface.towards_viewer
+    view = direction if lamp.at_camera else surface.towards_viewer
     mirrored = dr.maximum(dr.dot(2.0 * cosine * normals - direction, view), 0.0)
     lobes = []
     for exponent in shininess:
@@ -74,8 +75,8 @@ def components(
         lobe = dr.select(mirrored > 0.0, dr.power(dr.maximum(mirrored, 1e-8), n), 0.0)
         lobes.append(0.5 * (n + 2.0) * lobe * received)
     covered = dr.select(seen, 1.0, dr.zeros(mi.Float, dr.width(points)))
-    ambient = dr.select(seen, sky, 0.0)
-    pictures = [covered, ambient, received, *lobes]
+    ambient = dr.select(seen, sky * albedo, 0.0)
+    pictures = [covered, ambient, received * albedo, *lobes]
     dr.eval(pictures)
     shape = (surface.view.rows, surface.view.columns)
     pooled = [_pool(np.asarray(p), shape, subsamples) for p in pictures]

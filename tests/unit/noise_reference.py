@@ -1,7 +1,7 @@
 """A second implementation of the noise, in NumPy and double precision, written from GD10 eq. 2 and 3.
 
-It looks at every cell within two of a position (three in the tests of the lattice) and sorts, so it shares neither
-the order of the search nor any array code with the package. Only the constants are taken from there.
+It looks at every cell within two of a position and sorts, so it shares neither the order of the search nor
+any array code with the package. Only the constants are taken from there.
 """
 
 import itertools
@@ -44,7 +44,7 @@ def feature_points(cells: NDArray[np.int64], salt: int) -> tuple[Floats, NDArray
 
 
 def sorted_points(x: Floats, salt: int, reach: int = 2) -> tuple[Floats, Floats, NDArray[np.uint32]]:
-    """Distances (N, K), vectors from point to x (N, K, d) and words (N, K) of all cells in reach, nearest first."""
+    """Distances (N, K), vectors from point to x (N, K, d) and words (N, K) of all cells, nearest first."""
     offsets = np.array(list(itertools.product(range(-reach, reach + 1), repeat=x.shape[1])))
     points, words = feature_points(np.floor(x).astype(np.int64)[:, None] + offsets, salt)
     vectors = x[:, None] - points

@@ -127,7 +127,7 @@ def test_the_seed_changes_everything() -> None:
 
 
 def steepest(ranks: tuple[int, int], phi: float) -> float:
-    """A bound on the slope of N: envelope 2, stripes 2 pi phi, fades 2 / RANK_FADE on a factor of at most 2."""
+    """A bound on the slope of N: envelope 2, stripes 2 pi phi, fades 2 / RANK_FADE times at most 2."""
     each = 2.0 + 2 * np.pi * phi
     if ranks == (1, 50):
         return 22 * (each + 2.0)  # the window's slope is below 2
@@ -178,3 +178,19 @@ def test_no_jump_across_borders_of_cells(dims: int, ranks: tuple[int, int], phi:
 def test_octave_in_double_is_the_reference_near_and_far() -> None:
     x = np.random.default_rng(6).uniform(-1, 1, (2000, 3)) + np.array([1e5, -1e5, 0.0])
     assert octave_of(x, (2, 3), 2.0, 1.0) == pytest.approx(single_octave(x, 2, 3, SALT, 2.0, 1.0), abs=1e-7)
+
+
+def test_signed_points_are_continuous_and_vanish_at_borders_of_grains() -> None:
+    settings = NoiseSettings.from_ranks(2, 1, 2, signs=(1.0, -1.0, 1.0))
+    line = np.array([0.3, -7.0]) + np.arange(100_000)[:, None] * 1e-4 * np.array([0.8, 0.6])
+
+    def signed(phi: float) -> np.ndarray:
+        arrays = dr.opaque(mi.UInt32, SALT), dr.opaque(Float64, phi), dr.opaque(Float64, 2.0)
+        return octave.single_octave(columns(line), settings, *arrays).numpy()
+
+    plain = signed(0.0)
+    expected = octave_of(line, (1, 1), 0.0, 0.0) - octave_of(line, (2, 2), 0.0, 0.0)
+    assert plain == pytest.approx(expected, abs=1e-12)
+    assert plain.min() < 1e-3  # the line crosses several borders
+    # Two changes of weight beside each point, not one.
+    assert np.abs(np.diff(signed(2.0))).max() < 2 * steepest((2, 3), 2.0) * 1e-4

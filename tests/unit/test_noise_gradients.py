@@ -40,7 +40,7 @@ def offsets_of(float_type: Any, **steps: float) -> dict[str, Any]:
 
 
 def relief(case: Case, offsets: dict[str, Any], **changed: float) -> Any:
-    """R at POINTS with an offset added to everything it depends on, so that all derivatives share a kernel."""
+    """R at POINTS with an offset added to all it depends on, so that every derivative shares a kernel."""
     dims, first, last, octaves, gaussian = case
     float_type: Any = type(offsets["x"])
     values = {key: dr.opaque(float_type, v) + offsets[key] for key, v in (VALUES | changed).items()}

@@ -69,7 +69,8 @@ def test_hash_words_are_these() -> None:
     #           v[2] = (v[2] + v[0] * v[1]) % M; v[3] = (v[3] + v[1] * v[2]) % M
     #           if again: v = [c ^ (c >> 16) for c in v]
     #       return v
-    #   [pcg4d(*(c % 2**32 for c in cell)) for cell in ((0, 0, 0, 0), (1, -2, 3, 7), (-100000, 99999, 0, 2**32 - 1))]
+    #   cells = (0, 0, 0, 0), (1, -2, 3, 7), (-100000, 99999, 0, 2**32 - 1)
+    #   [pcg4d(*(c % 2**32 for c in cell)) for cell in cells]
     expected = [
         [251852841, 760645481, 850445371, 3542436074],
         [3632712099, 2030375249, 192093169, 1318283050],
@@ -90,7 +91,8 @@ def test_points_lie_in_their_cells_uniformly() -> None:
         tuple(mi.Int32(cells[:, a].copy()) for a in range(3)), mi.UInt32(SALT), 3, mi.Float
     )
     jitter = np.stack([p.numpy() for p in position], -1)
-    assert jitter.min() >= 0.0 and jitter.max() < 1.0
+    assert jitter.min() >= 0.0
+    assert jitter.max() < 1.0
     counts, _ = np.histogramdd(jitter, bins=4, range=[(0, 1)] * 3)
     expected = len(cells) / 64
     chi_square = ((counts - expected) ** 2 / expected).sum()
@@ -123,7 +125,7 @@ def test_fewer_ranks_are_still_exact(needed: int) -> None:
 
 @pytest.mark.parametrize(("dims", "worst"), [(2, 1.3 * 2**0.5), (3, 3.5**0.5)])
 def test_no_position_is_farther_from_its_fourth_point(dims: int, worst: float) -> None:
-    # Points put at the far corner of every cell: the fourth smallest of those distances is the worst there is.
+    # Points at the far corner of every cell: the fourth smallest of those distances is the worst there is.
     grid = np.linspace(0.5, 1.0, 11)
     x = np.stack(np.meshgrid(*[grid] * dims), -1).reshape(-1, 1, dims)
     low = np.array(list(itertools.product(range(-2, 3), repeat=dims)))

@@ -44,6 +44,7 @@ class NoiseParameters(Record):
     domain: Literal["solid", "surface"] = declared("noise.domain")
     first_neighbour: int = declared("noise.first_neighbour")
     last_neighbour: int = declared("noise.last_neighbour")
+    weights: tuple[Annotated[float, limits("noise.weights")], ...] = declared("noise.weights")
     envelope: Literal["exponential", "gaussian"] = declared("noise.envelope")
     octaves: int = declared("noise.octaves")
     lacunarity: float = declared("noise.lacunarity")
@@ -78,6 +79,8 @@ class Reflectance(Record):
     diffuse: float = declared("reflectance.diffuse")
     specular: float = declared("reflectance.specular")
     shininess: float = declared("reflectance.shininess")
+    height_albedo: float = declared("reflectance.height_albedo")
+    cell_albedo: float = declared("reflectance.cell_albedo")
     tint: tuple[Annotated[float, limits("reflectance.tint")], ...] = declared("reflectance.tint")
 
     @field_validator("tint")

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from voldetail.detail import MONOTONE_CURVES, PAPER_NEIGHBOURS, START_CURVES
-from voldetail.fit.space import FOLDS, Kind, Space, Vector, shape_of
+from voldetail.fit.space import Kind, Space, Vector, shape_of
 
 
 @dataclass(frozen=True)
@@ -24,30 +24,39 @@ class Candidate:
     spent: int = 0
 
 
-def sampled(space: Space, count: int, seed: int, anisotropy: tuple[float, float], folds: bool = True) -> list[Candidate]:
+CHARACTERS = (
+    (False, "none", False), (True, "none", False), (False, "ridge", False), (False, "billow", False),
+    (False, "none", True),
+)
+"""Stripes, fold of H and grains that go together; each is a look of its own, and their products only multiply choices.
+The first two are GD10's."""
+
+
+def sampled(space: Space, count: int, seed: int, anisotropy: tuple[float, float], extended: bool = True) -> list[Candidate]:
     """Return ``count`` candidates that cover choices and numbers evenly (a scrambled Sobol sequence).
 
     ``anisotropy`` is (factor, angle) of the photo's own spectrum; half of the candidates start from it and half from
-    round cells, since the light alone makes any relief look stretched across it.
+    round cells, since the light alone makes any relief look stretched across it. ``extended`` allows what goes beyond
+    GD10: folded H, grains and pigment.
     """
-    kinds = [
-        Kind(first, last, envelope, octaves, striped, fold)
-        for (first, last), envelope, octaves, striped, fold in itertools.product(
-            PAPER_NEIGHBOURS, ("gaussian", "exponential"), (1, 2, 3), (False, True), FOLDS if folds else ("none",)
-        )
-        # Stripes are their own fold; together they only multiply the choices.
-        if not (striped and fold != "none")
+    families = [
+        (ranks, character)
+        for ranks, character in itertools.product(PAPER_NEIGHBOURS, CHARACTERS if extended else CHARACTERS[:2])
+        if not character[2] or ranks == (1, 2)
     ]
-    generator = qmc.Sobol(d=8, scramble=True, seed=np.random.default_rng(seed))
+    generator = qmc.Sobol(d=11, scramble=True, seed=np.random.default_rng(seed))
     points = generator.random_base2(math.ceil(math.log2(max(count, 2))))[:count]
-    order = np.random.default_rng(seed).permutation(len(kinds))
     factor, angle = anisotropy
     out = []
     for index, point in enumerate(points):
-        kind = kinds[order[index % len(kinds)]]
+        (first, last), (striped, fold, grains) = families[index % len(families)]
+        kind = Kind(
+            first, last, "gaussian" if point[8] < 0.5 else "exponential", 1 + int(point[9] * 3), striped, fold, grains,
+            extended and point[10] < 0.5,
+        )
         low, high = space.scale
         rough_low, rough_high = space.roughness
-        stretched = index % 2 == 0
+        stretched = (index // len(families)) % 2 == 0
         shape = START_CURVES[MONOTONE_CURVES[int(point[3] * len(MONOTONE_CURVES)) % len(MONOTONE_CURVES)]]
         values = {
             "noise.scale": low * (high / low) ** float(point[0]),
@@ -56,6 +65,7 @@ def sampled(space: Space, count: int, seed: int, anisotropy: tuple[float, float]
             "noise.angle": angle if stretched else math.pi * float(point[2]),
             "noise.lacunarity": 1.5 + 1.5 * float(point[4]),
             "noise.stripe_frequency": 0.5 * 6.0 ** float(point[5]),
+            "reflectance.height_albedo": 0.3 * float(point[6]), "reflectance.cell_albedo": 0.4 * float(point[7]),
             "noise.stripe_spread": math.pi * (1.0 if point[6] < 0.5 else float(point[7])),
         } | {f"shape.{i}": float(v) for i, v in enumerate(shape_of(shape))}
         out.append(Candidate(kind, space.encode(kind, values)))
@@ -94,11 +104,11 @@ def paper_grid(space: Space, anisotropy: tuple[float, float]) -> list[Candidate]
 
 
 def best_distinct(candidates: list[Candidate], count: int) -> list[Candidate]:
-    """Return the ``count`` best candidates of different kinds, octaves aside; the best of all come first."""
+    """Return the ``count`` best candidates of different families: ranks, stripes, fold and grains; the best first."""
     chosen: list[Candidate] = []
     seen = set()
     for candidate in sorted(candidates, key=lambda c: c.value):
-        key = replace(candidate.kind, octaves=1)
+        key = replace(candidate.kind, octaves=1, envelope="", pigment=False)
         if key not in seen:
             seen.add(key)
             chosen.append(candidate)

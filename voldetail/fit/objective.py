@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.detail import Detail
-from voldetail.detail.record import Reflectance
 from voldetail.errors import InputError
 from voldetail.fit.reflectance import solve
 from voldetail.fit.target import Target
@@ -54,9 +53,11 @@ class Objective:
         picture = np.minimum(picture, self.target.white)
         detail = detail.model_copy(
             update={
-                "reflectance": Reflectance(
-                    ambient=found.ambient, diffuse=found.diffuse, specular=found.specular,
-                    shininess=found.shininess, tint=self.target.tint,
+                "reflectance": detail.reflectance.model_copy(
+                    update={
+                        "ambient": found.ambient, "diffuse": found.diffuse, "specular": found.specular,
+                        "shininess": found.shininess, "tint": self.target.tint,
+                    }
                 )
             }
         )

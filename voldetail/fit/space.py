@@ -14,13 +14,19 @@ from numpy.typing import NDArray
 
 from voldetail.detail import Detail, bounds, parameter
 from voldetail.detail.parameters import CURVE_POINTS
-from voldetail.detail.record import NoiseParameters, ReliefParameters
+from voldetail.detail.record import NoiseParameters, Reflectance, ReliefParameters
 
 Vector = NDArray[np.float64]
 
-SHAPE_COUNT = 4
-SHAPE_RANGE = 2.5
-"""Range of the numbers that shape H: exp(2.5) = 12 between the steepest and the flattest part by each."""
+SHAPE_COUNT = 3
+SHAPE_RANGE = 2.0
+"""Range of the numbers that shape H: exp(2 x 2) = 55 between its steepest and flattest part by each, at most."""
+
+GRAINS = (1.0, -1.0, 1.0)
+
+HEIGHT_ALBEDO = (-0.2, 0.6)
+CELL_ALBEDO = (0.0, 0.6)
+"""Ranges that are searched: dust and moss sit in hollows more often than on tops; tuned on gravel and grass."""
 
 FOLDS = ("none", "ridge", "billow")
 
@@ -29,7 +35,8 @@ FOLDS = ("none", "ridge", "billow")
 class Kind:
     """What is discrete: ranks of feature points, envelope, octaves, whether there are stripes, and how H is folded.
 
-    fold: "none" keeps H monotone; "ridge" is 1 - |2H - 1| of a monotone H, "billow" |2H - 1|.
+    grains: the second point counts against the first, so that the noise vanishes on the border of cells. pigment: albedo
+    varies with height and from grain to grain. fold: "none" keeps H monotone; "ridge" is 1 - |2H - 1| of a monotone H, "billow" |2H - 1|.
     """
 
     first: int
@@ -38,6 +45,8 @@ class Kind:
     octaves: int
     striped: bool
     fold: str = "none"
+    grains: bool = False
+    pigment: bool = False
 
 
 @dataclass(frozen=True)
@@ -67,6 +76,8 @@ class Space:
             out.append("noise.lacunarity")
         if kind.striped:
             out += ["noise.stripe_frequency", "noise.stripe_spread"]
+        if kind.pigment:
+            out += ["reflectance.height_albedo", "reflectance.cell_albedo"]
         return out + [f"shape.{i}" for i in range(SHAPE_COUNT)]
 
     def range_of(self, name: str) -> tuple[float, float, bool]:
@@ -75,7 +86,8 @@ class Space:
             return -SHAPE_RANGE, SHAPE_RANGE, False
         own = {
             "noise.scale": self.scale, "roughness": self.roughness, "noise.anisotropy": self.anisotropy,
-            "noise.stripe_frequency": self.stripes,
+            "noise.stripe_frequency": self.stripes, "reflectance.height_albedo": HEIGHT_ALBEDO,
+            "reflectance.cell_albedo": CELL_ALBEDO,
         }.get(name)
         low, high = own or bounds(name)
         return low, high, name in ("roughness", "noise.stripe_frequency") or parameter(name).scale == "log"
@@ -92,7 +104,7 @@ class Space:
         shown = 1 + int(max(0.0, math.log(self.finest / values["noise.scale"]) / math.log(lacunarity)))
         noise = NoiseParameters(
             domain=self.domain, first_neighbour=kind.first, last_neighbour=kind.last, envelope=kind.envelope,  # type: ignore[arg-type]
-            octaves=min(kind.octaves, shown), lacunarity=lacunarity,
+            weights=GRAINS if kind.grains else (1.0, 1.0, 1.0), octaves=min(kind.octaves, shown), lacunarity=lacunarity,
             stripe_frequency=values.get("noise.stripe_frequency", 0.0),
             stripe_spread=values.get("noise.stripe_spread", 0.0),
             scale=values["noise.scale"], anisotropy=values["noise.anisotropy"], angle=values["noise.angle"],
@@ -101,7 +113,10 @@ class Space:
         amplitude = self.amplitude
         if amplitude is None:
             amplitude = min(values["roughness"] / values["noise.scale"], bounds("relief.amplitude")[1])
-        return Detail(noise=noise, relief=ReliefParameters(amplitude=amplitude))
+        pigment = {k: values.get(f"reflectance.{k}", 0.0) for k in ("height_albedo", "cell_albedo")}
+        return Detail(
+            noise=noise, relief=ReliefParameters(amplitude=amplitude), reflectance=Reflectance(**pigment)
+        )
 
     def encode(self, kind: Kind, values: dict[str, float]) -> Vector:
         """Return the vector with the given numbers; those that are missing are in the middle."""

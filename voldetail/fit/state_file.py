@@ -1,7 +1,7 @@
 """A running fit on disk: State to and from JSON, so that an interrupted fit can go on.
 
-Nothing is unpickled or evaluated. The file names the inputs that it belongs to by their content (not by their path, so
-that a folder can be moved), and is refused for any other.
+Nothing is unpickled or evaluated. The file names the inputs that it belongs to by their content (not by their
+path, so that a folder can be moved), and is refused for any other.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from voldetail import __version__
 from voldetail.detail import ALLOWED_NEIGHBOURS
 from voldetail.detail.reading import read_small_text
 from voldetail.detail.record import Record, Sha256
-from voldetail.detail.refusal import printable, refusal
+from voldetail.detail.refusal import printable, refusal, shown
 from voldetail.errors import InputError
 from voldetail.files import sha256, write_text
 from voldetail.fit.candidates import Candidate
@@ -32,11 +32,19 @@ STATE_VERSION: Literal[1] = 1
 MOST_CANDIDATES = 10_000  # the paper's whole grid has some thousands
 MOST_NUMBERS = 64  # of a candidate; eleven are searched today
 
-# Not part of what a state belongs to: where files lie (their content is), and how long the search may still go on.
-_FREE = {"photo": {"path"}, "mask": True, "proxy": {"mesh"}, "output": True, "fit": {"evaluations", "time_limit"}}
+# Not part of what a state belongs to: where files lie (their content is), and how long the search may go on.
+_FREE = {
+    "photo": {"path"},
+    "mask": True,
+    "proxy": {"mesh"},
+    "output": True,
+    "fit": {"evaluations", "time_limit"},
+}
 
 _Count = Annotated[int, Field(ge=0, le=10**9)]
-_Unit = Annotated[float, Field(ge=-1e6, le=1e6)]  # searched in [0, 1], but angles wrap and may have gone round
+_Unit = Annotated[
+    float, Field(ge=-1e6, le=1e6)
+]  # searched in [0, 1], but angles wrap and may have gone round
 
 
 class _KindRecord(Record):
@@ -84,14 +92,22 @@ def save_state(path: Path, state: State, setup: Setup, photo_sha256: str) -> Non
     """
     pool = [
         {
-            "kind": vars(c.kind), "vector": np.asarray(c.vector, dtype=float).tolist(),
-            "value": float(c.value) if math.isfinite(c.value) else None, "spread": float(c.spread), "spent": c.spent,
+            "kind": vars(c.kind),
+            "vector": np.asarray(c.vector, dtype=float).tolist(),
+            "value": float(c.value) if math.isfinite(c.value) else None,
+            "spread": float(c.spread),
+            "spent": c.spent,
         }
         for c in state.pool
     ]
     data = {
-        "format": FORMAT, "version": STATE_VERSION, "belongs": _belongs(setup, photo_sha256), "stage": state.stage,
-        "evaluations": state.evaluations, "seconds": float(state.seconds), "pool": pool,
+        "format": FORMAT,
+        "version": STATE_VERSION,
+        "belongs": _belongs(setup, photo_sha256),
+        "stage": state.stage,
+        "evaluations": state.evaluations,
+        "seconds": float(state.seconds),
+        "pool": pool,
         "trace": [[int(count), float(best)] for count, best in state.trace],
     }
     # Python writes each float with the digits that bring back the same bits.
@@ -101,8 +117,8 @@ def save_state(path: Path, state: State, setup: Setup, photo_sha256: str) -> Non
 def load_state(path: Path, setup: Setup, photo_sha256: str) -> State:
     """Return the State in ``path`` if it belongs to ``setup`` and the photo of ``photo_sha256``.
 
-    Raises InputError if the file is missing, too large, not such a file, of another version, inconsistent, or if it
-    belongs to another photo, mask, mesh or setup; the budget of evaluations and time may differ.
+    Raises InputError if the file is missing, too large, not such a file, of another version, inconsistent, or if
+    it belongs to another photo, mask, mesh or setup; the budget of evaluations and time may differ.
     """
     where = printable(str(path))
     text = read_small_text(path, "state file")
@@ -113,7 +129,9 @@ def load_state(path: Path, setup: Setup, photo_sha256: str) -> State:
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise InputError(f"{where} is not the state of a fit; start again without --resume.")
     if data.get("version") != STATE_VERSION:
-        raise InputError(f"{where} was written by another version of voldetail; start again without --resume.")
+        raise InputError(
+            f"{where} was written by another version of voldetail; start again without --resume."
+        )
     try:
         record = _StateRecord.model_validate_json(text, strict=True)
     except ValidationError as error:
@@ -126,7 +144,9 @@ def load_state(path: Path, setup: Setup, photo_sha256: str) -> State:
 
 def _belongs(setup: Setup, photo_sha256: str) -> dict[str, Any]:
     return {
-        "voldetail": __version__, "photo": photo_sha256, "mask": sha256(setup.mask) if setup.mask else None,
+        "voldetail": __version__,
+        "photo": photo_sha256,
+        "mask": sha256(setup.mask) if setup.mask else None,
         "mesh": sha256(setup.proxy.mesh) if setup.proxy.mesh else None,
         "setup": setup.model_dump(mode="json", exclude=_FREE),  # type: ignore[arg-type]
     }
@@ -144,13 +164,13 @@ def _refuse_other(found: _Belongs, setup: Setup, photo_sha256: str, where: str) 
     for key in sorted(then.keys() | now.keys()):
         if then.get(key) != now.get(key):
             raise InputError(
-                f"{where} belongs to a fit with {printable(key)} = {printable(json.dumps(then.get(key)))[:60]}, and"
-                f" now it is {printable(json.dumps(now.get(key)))[:60]}{end}"
+                f"{where} belongs to a fit with {printable(key)} = {shown(then.get(key))}, and now it is"
+                f" {shown(now.get(key))}{end}"
             )
     if found.voldetail != wanted["voldetail"]:
         raise InputError(
-            f"{where} was written by voldetail {printable(found.voldetail)[:20]} and this is {__version__}, whose"
-            " search may differ; start again without --resume."
+            f"{where} was written by voldetail {printable(found.voldetail)[:20]}, and the search of this"
+            f" {__version__} may differ; start again without --resume."
         )
 
 
@@ -166,7 +186,9 @@ def _candidate(record: _CandidateRecord, setup: Setup, where: str) -> Candidate:
     # The names do not depend on the bounds of the space.
     names = Space(setup.domain, (1.0, 2.0), 2.0, setup.amplitude).names(kind)
     if len(record.vector) != len(names) or (kind.first, kind.last) not in ALLOWED_NEIGHBOURS:
-        raise InputError(f"{where} holds a candidate that this setup cannot have; start again without --resume.")
+        raise InputError(
+            f"{where} holds a candidate that this setup cannot have; start again without --resume."
+        )
     value = math.inf if record.value is None else record.value
     return Candidate(kind, np.array(record.vector, dtype=np.float64), value, record.spread, record.spent)
 

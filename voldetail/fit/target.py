@@ -7,14 +7,21 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter
 
 from voldetail.errors import InputError
 from voldetail.fit.zone import default_zone
 from voldetail.image import Photo, load_mask, load_photo, luminance, resize
 from voldetail.metric import Descriptor, describe, distance
+from voldetail.scene.build import faces_camera
 from voldetail.scene.lamp import Lamp, lamp_of
 from voldetail.scene.setup import SKIMAGE_PREFIX, Setup
-from voldetail.scene.view import Zone
+from voldetail.scene.view import View, Zone, view_of
+
+SLOW_SHADING = 0.12
+"""Blur, in zone widths, that separates a near light's fall-off from the texture; tuned on the flash photographs of
+../shared/data, where the main wavelength is a tenth of this."""
+
 
 @dataclass(frozen=True)
 class Target:
@@ -87,16 +94,37 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
     used = share > 0.999
     if not used.any():
         raise InputError("The mask leaves nothing of the zone to compare: use a larger mask or another --zone.")
+    lamp = lamp_of(setup.light, luminance(photo.pixels))
+    if lamp.position is not None and faces_camera(setup):
+        pixels = _with_falloff_of(lamp, pixels, used, view_of(setup.camera, (rows, columns), zone, setup.photo.resolution))
     light = luminance(pixels)
     mean = pixels[used].mean(axis=0).astype(np.float64)
     tint = mean / max(float(luminance(mean[None, None, :].astype(np.float32))[0, 0]), 1e-6)
     descriptor = describe(light, used, metric=setup.fit.metric)
     return Target(
         photo=photo, pixels=pixels, luminance=light, mask=used, shape=(rows, columns), zone=zone,
-        lamp=lamp_of(setup.light, luminance(photo.pixels)), tint=(float(tint[0]), float(tint[1]), float(tint[2])),
+        lamp=lamp, tint=(float(tint[0]), float(tint[1]), float(tint[2])),
         descriptor=descriptor, photo_halves=_halves(light, used, setup.fit.metric),
         white=max(1.0, float(light.max())),
     )
+
+
+def _with_falloff_of(
+    lamp: Lamp, pixels: NDArray[np.float32], mask: NDArray[np.bool_], view: View
+) -> NDArray[np.float32]:
+    """Return ``pixels`` with the slow fall-off of their light replaced by that of ``lamp`` on a bare plane.
+
+    A flash's true height, its lobe and the lens's vignetting are not known; what they do to the photo belongs to the
+    scene and must not be fitted as relief. Burnt-out pixels stay as they are.
+    """
+    sigma = SLOW_SHADING * max(mask.shape)
+    weight = np.maximum(gaussian_filter(mask.astype(np.float32), sigma, mode="nearest"), 1e-3)
+    slow = gaussian_filter(np.where(mask, luminance(pixels), 0.0), sigma, mode="nearest") / weight
+    x, y = view.coordinates(1)
+    wanted = lamp.on_plane(x, y).reshape(mask.shape)
+    gain = wanted / np.maximum(slow, 1e-4)
+    gain *= np.mean(slow[mask]) / np.mean(wanted[mask])
+    return np.asarray(np.minimum(pixels * np.clip(gain, 0.25, 4.0)[..., None], 1.0), dtype=np.float32)
 
 
 def _halves(light: NDArray[np.float32], mask: NDArray[np.bool_], metric: str) -> float | None:

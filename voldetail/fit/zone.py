@@ -18,7 +18,7 @@ them across 192 pixels; tuned on the photographs of ../shared/data."""
 SHADING_SHARE = 0.08
 """Blur, in photo widths, that is taken away as slow shading before the wavelength is measured."""
 
-CLIPPED = (0.003, 0.97)
+CLIPPED = (0.003, 0.85)
 """Linear luminance outside which a pixel of an 8-bit photo says little: crushed or burnt out."""
 
 ANALYSED = 1024

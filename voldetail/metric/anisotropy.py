@@ -40,8 +40,8 @@ def anisotropy(luminance: NDArray[np.floating], mask: Mask | None = None) -> tup
     window *= window
     image = (image - np.sum(image * window) / np.sum(window)) * window
     power = np.abs(np.fft.fft2(image)) ** 2
-    x = np.fft.fftfreq(image.shape[1])[None, :]
-    y = -np.fft.fftfreq(image.shape[0])[:, None]  # rows run downwards, y upwards
+    x = np.asarray(np.fft.fftfreq(image.shape[1])[None, :], np.float64)
+    y = np.asarray(-np.fft.fftfreq(image.shape[0])[:, None], np.float64)  # rows run downwards, y upwards
     return _elongation(power, x, y, LOWEST / min(image.shape))
 
 

@@ -116,9 +116,7 @@ def responses(image: Array, stride: int = 1) -> Array:
     return out.reshape(len(FREQUENCIES), -1, width)[:, :height]
 
 
-def _amplitudes(
-    u: int, v: int, cosine: Array, sine: Array | None, width: int
-) -> dict[tuple[int, int], Array]:
+def _amplitudes(u: int, v: int, cosine: Array, sine: Array | None, width: int) -> dict[tuple[int, int], Array]:
     """Squared amplitudes of (u, v) and, where it differs, (u, -v).
 
     `cosine` and `sine` are the column passes by cos and sin of v, (..., width) for u = 0, else the row pass's cosine

@@ -22,7 +22,7 @@ LEVEL_NAMES = tuple(f"level {level}" for level in range(LEVELS))
 
 
 def inside(mask: Mask, size: int) -> Mask:
-    """Where a size x size window lies wholly in the mask, by its first pixel: (H, W) -> (H - size + 1, W - size + 1)."""
+    """Where a size x size window lies wholly in the mask, by first pixel: (H, W) -> (H - size + 1, W - size + 1)."""
     rows, columns = mask.shape[0] - size + 1, mask.shape[1] - size + 1
     if rows < 1 or columns < 1:
         return np.zeros((max(rows, 0), max(columns, 0)), bool)
@@ -57,9 +57,7 @@ class Layers:
         mask = self.masks[level]
         return None if mask is None else inside(mask, size)
 
-    def pick(
-        self, values: NDArray[_Value], level: int, size: int = WINDOW, stride: int = 1
-    ) -> NDArray[_Value]:
+    def pick(self, values: NDArray[_Value], level: int, size: int = WINDOW, stride: int = 1) -> NDArray[_Value]:
         """(K, h, w) values of size x size windows -> (K, N): those that the mask allows."""
         allowed = self.windows(level, size)
         if allowed is None:

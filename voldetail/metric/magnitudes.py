@@ -35,10 +35,10 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
         magnitudes, allowed = maps[level]
         upper = np.triu_indices(len(magnitudes), 1)
         found[f"within {name}"] = _correlations(magnitudes, magnitudes, allowed)[upper]
-        step = 1 if level else 2
-        lags = ((rows // step, columns // step) for rows, columns in LAGS)
-        found[f"space {name}"] = np.concatenate([_lagged(magnitudes, allowed, *lag) for lag in lags])
-        if level + 1 < LEVELS:
+        if level + 1 < LEVELS:  # a coarsest level has too few displaced pairs, and no next level
+            step = 1 if level else 2
+            lags = ((rows // step, columns // step) for rows, columns in LAGS)
+            found[f"space {name}"] = np.concatenate([_lagged(magnitudes, allowed, *lag) for lag in lags])
             coarse, coarse_allowed = maps[level + 1]
             # Window y is centred on pixel y + 3, and coarse pixel y + 3 lies on fine pixel 2 y + 6: fine window
             # 2 y + 3, at level 0 (every second window) its neighbour 2 (y + 1).
@@ -85,4 +85,4 @@ def _lagged(maps: Array, allowed: Allowed, rows: int, columns: int) -> Array:
     near = (slice(0, height - rows), slice(max(-columns, 0), width - max(columns, 0)))
     far = (slice(rows, height), slice(max(columns, 0), width - max(-columns, 0)))
     pairs = max(int((allowed[near] & allowed[far]).sum()), 1)
-    return np.einsum("kij,kij->k", maps[:, *near], maps[:, *far]) / np.float32(pairs)
+    return np.asarray(np.einsum("kij,kij->k", maps[:, *near], maps[:, *far]) / pairs, np.float32)

@@ -9,11 +9,11 @@ Array = NDArray[np.float32]
 Parts = Mapping[str, Array]
 
 STEPS = 32
-"""Steps of a quantile function; each is the mean of the values between two quantiles, so none hangs on one pixel."""
+"""Steps of a quantile function, each the mean of the values between two quantiles: none hangs on one pixel."""
 
 
 def quantile_functions(values: Array) -> Array:
-    """(K, N) samples of K distributions -> (K, 32) quantile functions, each step a mean over 1/32 of the samples."""
+    """(K, N) samples of K distributions -> (K, 32) quantile functions; a step is the mean of 1/32 of the samples."""
     ordered = np.sort(values, axis=1)
     samples = ordered.shape[1]
     if samples < STEPS:
@@ -27,10 +27,10 @@ def quantile_functions(values: Array) -> Array:
 
 def spread(functions: Array) -> Array:
     """Standard deviation of each distribution, (K, 1), never zero: the unit its distances are given in."""
-    return np.maximum(functions.std(axis=1, keepdims=True), np.float32(1e-4))
+    return np.asarray(np.maximum(functions.std(axis=1, keepdims=True), 1e-4), np.float32)
 
 
 def wasserstein(a: Array, b: Array, unit: Array | None) -> float:
-    """Mean over K of the 1-Wasserstein distances of K distributions (K, 32), each in its unit (K, 1) (None: 1)."""
+    """Mean of the 1-Wasserstein distances of K distributions (K, 32), each in its unit (K, 1) (None: 1)."""
     gap = np.abs(a - b)
     return float(np.mean(gap if unit is None else gap / unit))

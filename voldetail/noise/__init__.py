@@ -1,5 +1,6 @@
 """Cellular-Gabor noise (GD10 eq. 2 and 3) on any Dr.Jit array type; nothing here imports Mitsuba."""
 
+from voldetail.noise.cells import cell_value
 from voldetail.noise.curve import evaluate_curve
 from voldetail.noise.gabor import relief_function
 from voldetail.noise.lattice import cell_hash, feature_point, nearest_points, search_table
@@ -10,6 +11,7 @@ __all__ = [
     "KERNEL_RADIUS",
     "NoiseSettings",
     "cell_hash",
+    "cell_value",
     "evaluate_curve",
     "feature_point",
     "moments",

@@ -51,7 +51,7 @@ def relief_function(
     width 1, differentiable. Keep what changes opaque (`dr.opaque`), else each value compiles a kernel.
     """
     float_type: Any = type(points[0])
-    x = _frame(points, scale, anisotropy, angle)
+    x = frame(points, scale, anisotropy, angle)
     mean, deviation = differentiable_moments(settings, float_type, stripe_frequency, stripe_spread)
     total = dr.zeros(float_type, dr.width(points[0]))
     weight: Any = float_type(1.0)
@@ -71,7 +71,7 @@ def relief_function(
     return evaluate_curve(curve, z / dr.sqrt(1.0 + z * z), CURVE_POINTS)
 
 
-def _frame(points: tuple[Any, ...], scale: Any, anisotropy: Any, angle: Any) -> tuple[Any, ...]:
+def frame(points: tuple[Any, ...], scale: Any, anisotropy: Any, angle: Any) -> tuple[Any, ...]:
     """Return X = S Q x in lattice axes: rotate by -angle in the first two axes, scale, turn (3D)."""
     s, c = dr.sincos(angle)
     x, y, *rest = points

@@ -84,14 +84,23 @@ class NoiseSettings:
 
     @staticmethod
     def from_ranks(
-        dims: int, first: int, last: int, octaves: int = 1, gaussian: bool = False
+        dims: int,
+        first: int,
+        last: int,
+        octaves: int = 1,
+        gaussian: bool = False,
+        signs: tuple[float, ...] = (1.0, 1.0, 1.0),
     ) -> NoiseSettings:
-        """Return the settings for GD10's k = first, k' = last: (1, 50) or any 1 <= k <= k' <= 3."""
+        """Return the settings for GD10's k = first, k' = last: (1, 50) or any 1 <= k <= k' <= 3.
+
+        ``signs`` weighs the first to third point where it is in the set; the paper's are all 1. With (1, -1) the noise
+        falls to zero where two points are equally close: the border between grains.
+        """
         if (first, last) == (1, 50):
             return NoiseSettings(dims, True, (1.0, 1.0, 1.0), octaves, gaussian)
         if not 1 <= first <= last <= RANKS - 1:
             raise ValueError(f"(k, k') = ({first}, {last}) is neither (1, 50) nor 1 <= k <= k' <= 3")
-        w = tuple(1.0 if first <= i <= last else 0.0 for i in (1, 2, 3))
+        w = tuple(float(signs[i - 1]) if first <= i <= last else 0.0 for i in (1, 2, 3))
         return NoiseSettings(dims, False, (w[0], w[1], w[2]), octaves, gaussian)
 
 

@@ -21,10 +21,15 @@ def light_words(light: Light) -> str:
     if light.kind == "flash":
         foot = ""
         if light.foot:
-            foot = f", nearest {100 * light.foot[0]:.0f} % from the left and {100 * light.foot[1]:.0f} % from the top"
+            left, top = (100 * v for v in light.foot)
+            foot = f", nearest {left:.0f} % from the left and {top:.0f} % from the top"
         return f"a flash {light.height:.3g} photo widths in front of it{foot}"
     if light.position:
-        return "a lamp at " + ", ".join(f"{v:.3g}" for v in light.position) + " scene units (right, up, to the viewer)"
+        return (
+            "a lamp at "
+            + ", ".join(f"{v:.3g}" for v in light.position)
+            + " scene units (right, up, to the viewer)"
+        )
     assert light.direction is not None
     azimuth, elevation = angles(light.direction)
     if elevation > HEAD_ON:
@@ -68,6 +73,15 @@ def facts(result: FitResult) -> list[tuple[str, str]]:
         ("Solver", f"{setup.fit.solver}, metric {setup.fit.metric}, seed {setup.seed}; {result.status}"),
         ("Distance", distance_words(result)),
     ]
+
+
+def overlay_words(setup: Setup) -> str:
+    """What is drawn over the whole photo."""
+    words = "The whole photo: the zone framed in white, what is not used dark"
+    flat = setup.proxy.kind == "plane" and setup.camera.kind == "orthographic"
+    # A plane that faces the viewer fills the photo and so has no outline in it.
+    filled = flat and setup.proxy.size is None and not any(setup.proxy.rotation)
+    return words + ("; the proxy is a plane that fills it" if filled else ", the proxy's outline orange")
 
 
 def distance_words(result: FitResult) -> str:

@@ -18,7 +18,7 @@ UNEVEN = 3.0
 
 @dataclass(frozen=True)
 class Verdict:
-    """`word` for a heading, `sentence` with the numbers, and how many yardsticks the distance is (None: unknown)."""
+    """`word` for a heading, `sentence` with the numbers, `ratio` to the yardstick (None: unknown)."""
 
     word: str
     sentence: str
@@ -28,8 +28,8 @@ class Verdict:
 def verdict(distance: float, floor: NoiseFloor) -> Verdict:
     """Judge M between photo and fit by M between the photo's halves or, where unknown, between two seeds.
 
-    Two halves of one photo, or two renderings of one detail with other random numbers, are the same texture to anyone:
-    a fit cannot be asked to be nearer than they are to each other.
+    Two halves of one photo, or two renderings of one detail with other random numbers, are the same texture to
+    anyone: a fit cannot be asked to be nearer than they are to each other.
     """
     if not math.isfinite(distance):
         return Verdict("no match", "The fit could not be compared with the photo.", None)
@@ -51,7 +51,8 @@ def verdict(distance: float, floor: NoiseFloor) -> Verdict:
     meaning = {
         "as alike": f"as near to the photo as {against} are to each other",
         "close": f"close to the photo, {ratio:.1f} times as far as {against} from each other",
-        "alike": f"like the photo but visibly different, {ratio:.1f} times as far as {against} from each other",
+        "alike": f"like the photo but visibly different, {ratio:.1f} times as far as {against} from each"
+        " other",
         "no match": f"not a match, {ratio:.3g} times as far as {against} from each other;"
         " check the light, the zone and the proxy, or let it search longer",
     }[word]

@@ -16,7 +16,7 @@ import numpy as np
 
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
-from voldetail.scene.relief import relief_at
+from voldetail.scene.relief import albedo_at, relief_at
 from voldetail.scene.view import View
 
 MARGIN = 16
@@ -46,6 +46,7 @@ class HeightField:
         self.x = mi.Float(gx.astype(np.float32).ravel())
         self.y = mi.Float(gy.astype(np.float32).ravel())
         self.z = dr.zeros(mi.Float, len(self.x))
+        self.albedo: Any = None
         self._column, self._row = self._indices()
         self._samples: dict[int, tuple[Any, Any]] = {}
 
@@ -59,10 +60,12 @@ class HeightField:
 
     def update(self, detail: Detail) -> None:
         """Compute heights A_d R and vertex normals, and the sky's visibility at the vertices."""
-        relief = relief_at(detail, (self.x, self.y, dr.full(self.float_type, self.base, len(self.x))))
+        domain = (self.x, self.y, dr.full(self.float_type, self.base, len(self.x)))
+        relief = relief_at(detail, domain)
         amplitude = dr.opaque(self.float_type, detail.relief.amplitude)
         self.z = relief * amplitude
-        dr.eval(self.z)
+        self.albedo = albedo_at(detail, domain, relief)
+        dr.eval(self.z, self.albedo)
         # The highest point ends every walk towards the light.
         self.top = dr.max(self.z)
         slope_x = (self._at(1, 0) - self._at(-1, 0)) * (0.5 / self.step)
@@ -100,14 +103,15 @@ class HeightField:
             total = total + dr.maximum(lobe, 0.0)
         return total * (2.0 / len(AZIMUTHS))
 
-    def look(self, subsamples: int) -> tuple[Any, Any, Any, Any]:
-        """Return (points, unit normals, sky visibility, seen at all) on a regular grid of samples, row by row."""
+    def look(self, subsamples: int) -> tuple[Any, Any, Any, Any, Any]:
+        """Return (points, unit normals, sky visibility, seen at all, albedo factor) of the samples, row by row."""
         mi = mitsuba()
         gx, gy = self._grid(subsamples)
-        z, nx, ny, nz, sky = self._interpolate(gx, gy, (self.z, *self.normal, self.sky))
+        fields = (self.z, *self.normal, self.sky) + (() if self.albedo is None else (self.albedo,))
+        z, nx, ny, nz, sky, *albedo = self._interpolate(gx, gy, fields)
         x = self.view.left + (gx - MARGIN) * self.step
         y = self.view.top - (gy - MARGIN) * self.step
-        return mi.Point3f(x, y, z + self.base), dr.normalize(mi.Vector3f(nx, ny, nz)), sky, mi.Bool(True)
+        return mi.Point3f(x, y, z + self.base), dr.normalize(mi.Vector3f(nx, ny, nz)), sky, mi.Bool(True), albedo[0] if albedo else 1.0
 
     def _grid(self, subsamples: int) -> tuple[Any, Any]:
         mi = mitsuba()

@@ -22,12 +22,15 @@ class Lamp:
     """A distant light (``direction``) or a near one (``position``), in scene units.
 
     ``strength`` is the irradiance in units of pi at the origin's plane facing the light (distant) or at the foot of a
-    near one: a white matt surface there has radiance ``strength``.
+    near one: a white matt surface there has radiance ``strength``. at_camera: a flash, seen from where it shines; the
+    view of each point is then the direction to the light. (A plane that faces a camera is drawn by perspective as by
+    parallel rays, up to scale, but its highlight is not.)
     """
 
     direction: tuple[float, float, float] | None = None
     position: tuple[float, float, float] | None = None
     strength: float = 1.0
+    at_camera: bool = False
 
     def at(self, point: Any) -> tuple[Any, Any, Any]:
         """Return (unit direction to the light, distance to it, irradiance / pi facing it) at Mitsuba points."""
@@ -46,6 +49,15 @@ class Lamp:
         strength = dr.opaque(float_type, self.strength * self.position[2] ** 2)
         return offset / distance, distance, strength / squared
 
+    def on_plane(self, x: NDArray[np.float32], y: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return what a white matt plane z = 0 facing the viewer reflects at (x, y): E n . l over pi."""
+        if self.position is None:
+            assert self.direction is not None
+            return np.full(x.shape, self.strength * self.direction[2], dtype=np.float32)
+        px, py, pz = self.position
+        squared = (x - px) ** 2 + (y - py) ** 2 + pz**2
+        return np.asarray(self.strength * pz**3 / squared**1.5, dtype=np.float32)
+
     @property
     def elevation(self) -> float:
         """Elevation above the image plane at the origin, in radians."""
@@ -63,7 +75,8 @@ def lamp_of(light: Light, luminance: NDArray[np.float32] | None = None) -> Lamp:
     rows, columns = luminance.shape if luminance is not None else (1, 1)
     unit = 2.0 / max(rows, columns)
     return Lamp(
-        position=((u - 0.5) * columns * unit, (0.5 - v) * rows * unit, 2.0 * light.height), strength=light.strength
+        position=((u - 0.5) * columns * unit, (0.5 - v) * rows * unit, 2.0 * light.height), strength=light.strength,
+        at_camera=True,
     )
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import drjit as dr
 
 from voldetail.detail import Detail
-from voldetail.noise import NoiseSettings, relief_function
+from voldetail.noise import NoiseSettings, cell_value, relief_function
 
 SOLID = "solid"
 
@@ -17,7 +17,8 @@ def settings_of(detail: Detail) -> NoiseSettings:
     noise = detail.noise
     dims = 3 if noise.domain == SOLID else 2
     return NoiseSettings.from_ranks(
-        dims, noise.first_neighbour, noise.last_neighbour, noise.octaves, noise.envelope == "gaussian"
+        dims, noise.first_neighbour, noise.last_neighbour, noise.octaves, noise.envelope == "gaussian",
+        noise.weights,
     )
 
 
@@ -42,3 +43,25 @@ def relief_at(detail: Detail, domain: tuple[Any, ...], scale: float = 1.0) -> An
         lacunarity=number(noise.lacunarity), stripe_frequency=number(noise.stripe_frequency),
         stripe_spread=number(noise.stripe_spread), curve=float_type(list(noise.curve)),
     )
+
+
+def albedo_at(detail: Detail, domain: tuple[Any, ...], relief: Any, scale: float = 1.0) -> Any | None:
+    """Return the factor (1 + g (2 R - 1)) (1 + v (2 u - 1)) on the albedo, or None where it is 1 everywhere.
+
+    g goes with the height R, v with the grain's own number u in [0, 1).
+    """
+    float_type: Any = type(domain[0])
+    noise, reflectance = detail.noise, detail.reflectance
+    factor: Any = None
+    if reflectance.height_albedo != 0.0:
+        factor = 1.0 + dr.opaque(float_type, reflectance.height_albedo) * (2.0 * relief - 1.0)
+    if reflectance.cell_albedo != 0.0:
+        uint_type = dr.uint32_array_t(float_type)
+        own = cell_value(
+            tuple(domain[: 3 if noise.domain == SOLID else 2]), dr.opaque(uint_type, detail.seed & 0xFFFFFFFF),
+            scale=dr.opaque(float_type, noise.scale / scale), anisotropy=dr.opaque(float_type, noise.anisotropy),
+            angle=dr.opaque(float_type, noise.angle),
+        )
+        grain = 1.0 + dr.opaque(float_type, reflectance.cell_albedo) * (2.0 * own - 1.0)
+        factor = grain if factor is None else factor * grain
+    return factor

@@ -11,7 +11,7 @@ import numpy as np
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
 from voldetail.scene.proxy import Proxy
-from voldetail.scene.relief import relief_at
+from voldetail.scene.relief import albedo_at, relief_at
 from voldetail.scene.view import View
 
 SKY_RAYS = 64
@@ -46,6 +46,8 @@ class MeshSurface:
         parameters.update()
         self.scene = mi.load_dict({"type": "scene", SHAPE: mesh, **(emitters or {})})
         self._parameters = mi.traverse(self.scene)
+        self._faces = tuple(mi.UInt32(np.ascontiguousarray(proxy.faces[:, corner])) for corner in range(3))
+        self.albedo: Any = None
         self.towards_viewer: Any = mi.Vector3f(0.0, 0.0, 1.0)
         self._key = next(k for k in self._parameters.keys() if k.endswith("vertex_positions"))
 
@@ -54,9 +56,10 @@ class MeshSurface:
         mi = mitsuba()
         relief = relief_at(detail, self._domain, self.scale)
         height = relief * dr.opaque(mi.Float, detail.relief.amplitude * self.scale)
+        self.albedo = albedo_at(detail, self._domain, relief, self.scale)
         positions = dr.ravel(self._positions + height * self._normals)
         # Left unevaluated, the noise would be computed again by each consumer of the vertices.
-        dr.eval(positions)
+        dr.eval(positions, self.albedo)
         self._parameters[self._key] = positions
         self._parameters.update()
 
@@ -69,8 +72,8 @@ class MeshSurface:
         eye = mi.Point3f(0.0, 0.0, self.view.distance)
         return mi.Ray3f(eye, dr.normalize(mi.Point3f(x, y, 0.0) - eye))
 
-    def look(self, subsamples: int) -> tuple[Any, Any, Any, Any]:
-        """Return (points, unit normals towards the viewer, sky visibility, seen at all) of the samples, row by row."""
+    def look(self, subsamples: int) -> tuple[Any, Any, Any, Any, Any]:
+        """Return (points, unit normals towards the viewer, sky visibility, seen at all, albedo factor), row by row."""
         ray = self.rays(subsamples)
         hit = self.scene.ray_intersect(ray)
         seen = hit.is_valid()
@@ -80,7 +83,20 @@ class MeshSurface:
         dr.eval(hit.p, normals, geometric, seen)
         self.towards_viewer = -ray.d
         self._geometric = geometric
-        return hit.p, normals, self._sky(hit.p, normals, geometric, seen), seen
+        sky = self._sky(hit.p, normals, geometric, seen)
+        return hit.p, normals, sky, seen, self._albedo_at(hit, seen)
+
+    def _albedo_at(self, hit: Any, seen: Any) -> Any:
+        """Return the albedo factor of the vertices, interpolated at the hits."""
+        if self.albedo is None:
+            return 1.0
+        float_type = type(self.albedo)
+        corners = [
+            dr.gather(float_type, self.albedo, dr.gather(type(face), face, hit.prim_index, seen), seen)
+            for face in self._faces
+        ]
+        u, v = hit.uv.x, hit.uv.y
+        return corners[0] * (1.0 - u - v) + corners[1] * u + corners[2] * v
 
     def _offset(self, points: Any, geometric: Any) -> Any:
         # A hundredth of a pixel off the surface, and never less than single precision can tell apart.

@@ -1,0 +1,161 @@
+"""`voldetail fit`: from a photo to a folder with the detail and its report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from voldetail.cli.console import output, remarks
+from voldetail.cli.fit_folder import DETAIL, FIT, FitFolder
+from voldetail.cli.fit_setup import output_folder, read_setup
+from voldetail.cli.threads import use_threads
+
+if TYPE_CHECKING:
+    from voldetail.fit.fitter import FitResult
+
+_Text = str | None
+LIGHT_HELP = (
+    "The light in the photo: AZ,EL in degrees (azimuth counter-clockwise from the right, elevation above the picture),"
+    " x,y,z towards it, flash, flash@height, flash@u,v, or point:x,y,z."
+)
+WHERE, SCENE, SEARCH = "Where and what", "The scene", "The search"
+
+
+def fit(
+    context: typer.Context,
+    photo: Annotated[str, typer.Argument(help="A photo, skimage:gravel (or grass, brick), or a scene as .toml.")],
+    light: Annotated[_Text, typer.Option(help=LIGHT_HELP, rich_help_panel=SCENE)] = None,
+    proxy: Annotated[
+        _Text,
+        typer.Option(
+            help="The shape in the photo: plane, sphere, ellipsoid, box, cylinder or a mesh file.",
+            rich_help_panel=SCENE,
+        ),
+    ] = None,
+    rotation: Annotated[
+        _Text, typer.Option(help="The proxy's turns about x, y, z in degrees.", rich_help_panel=SCENE)
+    ] = None,
+    camera: Annotated[_Text, typer.Option(help="orthographic or perspective.", rich_help_panel=SCENE)] = None,
+    fov: Annotated[
+        float | None,
+        typer.Option(help="Degrees across the photo's longest side; makes it perspective.", rich_help_panel=SCENE),
+    ] = None,
+    mask: Annotated[
+        _Text, typer.Option(help="A picture of the photo's size: white is used.", rich_help_panel=WHERE)
+    ] = None,
+    zone: Annotated[
+        _Text, typer.Option(help="The part that is fitted: X,Y,WIDTH,HEIGHT in pixels.", rich_help_panel=WHERE)
+    ] = None,
+    resolution: Annotated[
+        int | None, typer.Option(help="Its longest side when compared, in pixels.", rich_help_panel=WHERE)
+    ] = None,
+    folder: Annotated[
+        _Text,
+        typer.Option("--output", "-o", help="The folder for results; default voldetail-out/PHOTO.", rich_help_panel=WHERE),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an earlier fit.", rich_help_panel=WHERE)] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with an interrupted fit.", rich_help_panel=WHERE)
+    ] = False,
+    amplitude: Annotated[
+        float | None, typer.Option(help="The relief's height in scene units, if known.", rich_help_panel=SEARCH)
+    ] = None,
+    domain: Annotated[_Text, typer.Option(help="solid or surface.", rich_help_panel=SEARCH)] = None,
+    specular: Annotated[
+        bool | None,
+        typer.Option("--specular/--no-specular", help="Whether it may have highlights.", rich_help_panel=SEARCH),
+    ] = None,
+    solver: Annotated[_Text, typer.Option(help="default or paper.", rich_help_panel=SEARCH)] = None,
+    metric: Annotated[_Text, typer.Option(help="The distance that is minimised.", rich_help_panel=SEARCH)] = None,
+    seed: Annotated[int | None, typer.Option(help="The root of all random numbers.", rich_help_panel=SEARCH)] = None,
+    evaluations: Annotated[
+        int | None, typer.Option(help="The most pictures that are compared.", rich_help_panel=SEARCH)
+    ] = None,
+    time_limit: Annotated[
+        float | None, typer.Option(help="The longest time for the search, in seconds.", rich_help_panel=SEARCH)
+    ] = None,
+    override: Annotated[
+        list[str] | None,
+        typer.Option("-D", metavar="KEY=VALUE", help="Any setting of the scene file.", rich_help_panel=SEARCH),
+    ] = None,
+) -> None:
+    """Fit relief to one photo.
+
+    Leaves a folder with detail.json (the relief), report.html, sheet.png, fit.png, setup.toml (all settings) and
+    state.json (for --resume). Ctrl-C ends the search with the best so far.
+    """
+    options = {
+        "--light": light, "--proxy": proxy, "--rotation": rotation, "--camera": camera, "--fov": fov, "--mask": mask,
+        "--zone": zone, "--resolution": resolution, "--output": folder, "--amplitude": amplitude, "--domain": domain,
+        "--specular": specular, "--solver": solver, "--metric": metric, "--seed": seed, "--evaluations": evaluations,
+        "--time-limit": time_limit,
+    }  # fmt: skip
+    setup = read_setup(photo, options, override or [])
+    place = FitFolder(output_folder(setup), setup)
+    place.check(force=force, resume=resume)
+    run(place, resume=resume, threads=context.obj)
+
+
+def run(place: FitFolder, *, resume: bool, threads: int) -> None:
+    """Fit the setup of ``place`` and fill it."""
+    from voldetail.cli.progress import ProgressView
+    from voldetail.fit.fitter import fit as search
+    from voldetail.fit.session import Progress, State
+    from voldetail.fit.target import load_photo_of
+
+    console = remarks()
+    picture = load_photo_of(place.setup)
+    start = place.resumed(picture.sha256) if resume else None
+    if resume and start is None:
+        console.print("No state was saved in that folder yet: starting from the beginning.")
+    use_threads(threads)
+
+    with ProgressView(console) as view:
+
+        def on_progress(progress: Progress) -> None:
+            place.begin(keep=start is not None)
+            place.preview(progress)
+            view.searching(progress)
+
+        def on_state(state: State) -> None:
+            place.begin(keep=start is not None)
+            place.save_state(state, picture.sha256)
+
+        view.step("reading the photo and preparing the scene")
+        result = search(place.setup, photo=picture, start=start, on_progress=on_progress, on_state=on_state)
+        place.begin(keep=start is not None)  # a resumed fit that was complete reports no progress
+        place.finish(result)
+        _report(place.path, result, view.step)
+    _tell(place.path, result)
+
+
+def _report(folder: Path, result: FitResult, on_step: object) -> None:
+    from voldetail.apply import gallery
+    from voldetail.report import write_report
+
+    assert callable(on_step)
+    pictures = gallery(result, on_progress=lambda what: on_step(f"rendering {what}"))
+    on_step("writing the report")
+    write_report(folder, result, pictures)
+
+
+def _tell(folder: Path, result: FitResult) -> None:
+    """Say what was made and how good it is."""
+    from voldetail.report import PAGE_NAME, SHEET_NAME, verdict
+    from voldetail.report.facts import duration
+
+    console = output()
+    if result.interrupted:
+        console.print("Stopped by you: this is the best so far; the same command with --resume goes on.")
+    console.print(verdict(result.distance, result.detail.noise_floor).sentence, markup=False)
+    console.print(
+        f"{result.evaluations} pictures compared in {duration(result.seconds)}; {result.status}.", markup=False
+    )
+    for name, what in (
+        (PAGE_NAME, "the report: open it in a browser"), (SHEET_NAME, "the same on one picture"),
+        (DETAIL, "the detail: use it with voldetail render, relight and show"),
+        (FIT, "the photo's zone as the detail makes it"),
+    ):  # fmt: skip
+        console.print(f"  {folder / name}  {what}", markup=False, soft_wrap=True)

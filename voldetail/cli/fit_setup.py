@@ -1,0 +1,82 @@
+"""The options of `voldetail fit` as a Setup."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, get_args
+
+from voldetail.cli.arguments import numbers, whole_numbers
+from voldetail.detail.parameters import nearest
+from voldetail.detail.refusal import printable, shown
+from voldetail.errors import InputError
+from voldetail.scene.lights_text import FORMS
+from voldetail.scene.mesh_files import SUFFIXES
+from voldetail.scene.setup import ProxySetup, Setup
+from voldetail.scene.setup_file import load_setup, setup_from_text
+
+OUTPUT_ROOT = Path("voldetail-out")
+
+# What an option sets; its value is put there unless the table below says how.
+KEYS = {
+    "--light": "light", "--mask": "mask", "--amplitude": "amplitude", "--resolution": "photo.resolution",
+    "--solver": "fit.solver", "--metric": "fit.metric", "--seed": "seed", "--evaluations": "fit.evaluations",
+    "--time-limit": "fit.time_limit", "--domain": "domain", "--camera": "camera.kind",
+    "--fov": "camera.field_of_view", "--specular": "fit.specular", "--output": "output",
+}  # fmt: skip
+
+
+def read_setup(photo: str, options: Mapping[str, Any], overrides: Sequence[str]) -> Setup:
+    """Return the Setup of a photo, or of a TOML scene, with ``options`` (by name, None: not given) and -D overrides.
+
+    Overrides come last. Raises InputError that names the option that is wrong.
+    """
+    scene = photo.lower().endswith(".toml")
+    named = [] if scene else [("PHOTO", f"photo.path={json.dumps(photo, ensure_ascii=False)}")]
+    for option, value in options.items():
+        if value is not None:
+            named += [(f"{option} {printable(str(value))}", text) for text in _overrides(option, value, options)]
+    if not scene and options.get("--light") is None and not any(d.strip().startswith("light") for d in overrides):
+        raise InputError(f"The light of the photo is missing: give --light as {FORMS}.")
+    every = [text for _, text in named] + list(overrides)
+    where = printable(photo) if scene else "The setup"
+    try:
+        return load_setup(photo, every) if scene else setup_from_text("", every, where=where)
+    except InputError as error:
+        # The user typed --resolution 5 and not -D photo.resolution=5.
+        sentence = str(error)
+        for option, text in named:
+            sentence = sentence.replace(f"{where} with -D {shown(text)}", option)
+        raise InputError(sentence) from None
+
+
+def output_folder(setup: Setup) -> Path:
+    """The folder for the results: the setup's own, or one under `voldetail-out` named by the photo."""
+    return setup.output or OUTPUT_ROOT / (setup.photo.skimage or Path(setup.photo.path).stem)
+
+
+def _overrides(option: str, value: Any, options: Mapping[str, Any]) -> list[str]:
+    if option == "--zone":
+        zone = whole_numbers(value, 4, option, "X,Y,WIDTH,HEIGHT in pixels")
+        return [f"photo.zone={zone}"]
+    if option == "--proxy":
+        return _proxy(value)
+    if option == "--rotation":
+        return [f"proxy.rotation={numbers(value, 3, option, 'X,Y,Z in degrees')}"]
+    made = [f"{KEYS[option]}={json.dumps(value, ensure_ascii=False)}"]
+    if option == "--fov" and options.get("--camera") is None:
+        made.append('camera.kind="perspective"')  # an orthographic camera has no angle
+    return made
+
+
+def _proxy(value: str) -> list[str]:
+    kinds = [k for k in get_args(ProxySetup.model_fields["kind"].annotation) if k != "mesh"]
+    if value in kinds:
+        return [f'proxy.kind="{value}"', "proxy.mesh="]  # a scene may have named a mesh
+    if not Path(value).suffix:
+        raise InputError(
+            f"--proxy {shown(value)} is not known; {nearest(value, kinds)} (or give a mesh file: "
+            f"{', '.join(SUFFIXES)})."
+        )
+    return ['proxy.kind="mesh"', f"proxy.mesh={json.dumps(value, ensure_ascii=False)}"]
