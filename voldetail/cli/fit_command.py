@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,7 +10,6 @@ import typer
 
 from voldetail.cli.console import output, remarks
 from voldetail.cli.fit_folder import DETAIL, FIT, FitFolder
-from voldetail.cli.fit_setup import output_folder, read_setup
 from voldetail.cli.threads import use_threads
 
 if TYPE_CHECKING:
@@ -17,15 +17,17 @@ if TYPE_CHECKING:
 
 _Text = str | None
 LIGHT_HELP = (
-    "The light in the photo: AZ,EL in degrees (azimuth counter-clockwise from the right, elevation above the picture),"
-    " x,y,z towards it, flash, flash@height, flash@u,v, or point:x,y,z."
+    "The light in the photo: AZ,EL in degrees (azimuth counter-clockwise from the right, elevation above the"
+    " picture), x,y,z towards it, flash, flash@height, flash@u,v, or point:x,y,z."
 )
 WHERE, SCENE, SEARCH = "Where and what", "The scene", "The search"
 
 
 def fit(
     context: typer.Context,
-    photo: Annotated[str, typer.Argument(help="A photo, skimage:gravel (or grass, brick), or a scene as .toml.")],
+    photo: Annotated[
+        str, typer.Argument(help="A photo, skimage:gravel (or grass, brick), or a scene as .toml.")
+    ],
     light: Annotated[_Text, typer.Option(help=LIGHT_HELP, rich_help_panel=SCENE)] = None,
     proxy: Annotated[
         _Text,
@@ -40,57 +42,79 @@ def fit(
     camera: Annotated[_Text, typer.Option(help="orthographic or perspective.", rich_help_panel=SCENE)] = None,
     fov: Annotated[
         float | None,
-        typer.Option(help="Degrees across the photo's longest side; makes it perspective.", rich_help_panel=SCENE),
+        typer.Option(
+            help="Degrees across the photo's longest side; makes it perspective.", rich_help_panel=SCENE
+        ),
     ] = None,
     mask: Annotated[
         _Text, typer.Option(help="A picture of the photo's size: white is used.", rich_help_panel=WHERE)
     ] = None,
     zone: Annotated[
-        _Text, typer.Option(help="The part that is fitted: X,Y,WIDTH,HEIGHT in pixels.", rich_help_panel=WHERE)
+        _Text,
+        typer.Option(help="The part that is fitted: X,Y,WIDTH,HEIGHT in pixels.", rich_help_panel=WHERE),
     ] = None,
     resolution: Annotated[
         int | None, typer.Option(help="Its longest side when compared, in pixels.", rich_help_panel=WHERE)
     ] = None,
     folder: Annotated[
         _Text,
-        typer.Option("--output", "-o", help="The folder for results; default voldetail-out/PHOTO.", rich_help_panel=WHERE),
+        typer.Option(
+            "--output",
+            "-o",
+            help="The folder for results; default voldetail-out/PHOTO.",
+            rich_help_panel=WHERE,
+        ),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an earlier fit.", rich_help_panel=WHERE)] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace an earlier fit.", rich_help_panel=WHERE)
+    ] = False,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with an interrupted fit.", rich_help_panel=WHERE)
     ] = False,
     amplitude: Annotated[
-        float | None, typer.Option(help="The relief's height in scene units, if known.", rich_help_panel=SEARCH)
+        float | None,
+        typer.Option(help="The relief's height in scene units, if known.", rich_help_panel=SEARCH),
     ] = None,
     domain: Annotated[_Text, typer.Option(help="solid or surface.", rich_help_panel=SEARCH)] = None,
     specular: Annotated[
         bool | None,
-        typer.Option("--specular/--no-specular", help="Whether it may have highlights.", rich_help_panel=SEARCH),
+        typer.Option(
+            "--specular/--no-specular", help="Whether it may have highlights.", rich_help_panel=SEARCH
+        ),
     ] = None,
     solver: Annotated[_Text, typer.Option(help="default or paper.", rich_help_panel=SEARCH)] = None,
-    metric: Annotated[_Text, typer.Option(help="The distance that is minimised.", rich_help_panel=SEARCH)] = None,
-    seed: Annotated[int | None, typer.Option(help="The root of all random numbers.", rich_help_panel=SEARCH)] = None,
+    metric: Annotated[
+        _Text, typer.Option(help="The distance that is minimised.", rich_help_panel=SEARCH)
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(help="The root of all random numbers.", rich_help_panel=SEARCH)
+    ] = None,
     evaluations: Annotated[
         int | None, typer.Option(help="The most pictures that are compared.", rich_help_panel=SEARCH)
     ] = None,
     time_limit: Annotated[
-        float | None, typer.Option(help="The longest time for the search, in seconds.", rich_help_panel=SEARCH)
+        float | None,
+        typer.Option(help="The longest time for the search, in seconds.", rich_help_panel=SEARCH),
     ] = None,
     override: Annotated[
         list[str] | None,
-        typer.Option("-D", metavar="KEY=VALUE", help="Any setting of the scene file.", rich_help_panel=SEARCH),
+        typer.Option(
+            "-D", metavar="KEY=VALUE", help="Any setting of the scene file.", rich_help_panel=SEARCH
+        ),
     ] = None,
 ) -> None:
     """Fit relief to one photo.
 
-    Leaves a folder with detail.json (the relief), report.html, sheet.png, fit.png, setup.toml (all settings) and
-    state.json (for --resume). Ctrl-C ends the search with the best so far.
+    Leaves a folder with detail.json (the relief), report.html, sheet.png, fit.png, setup.toml (all settings)
+    and state.json (for --resume). Ctrl-C ends the search with the best so far.
     """
+    from voldetail.cli.fit_setup import output_folder, read_setup
+
     options = {
-        "--light": light, "--proxy": proxy, "--rotation": rotation, "--camera": camera, "--fov": fov, "--mask": mask,
-        "--zone": zone, "--resolution": resolution, "--output": folder, "--amplitude": amplitude, "--domain": domain,
-        "--specular": specular, "--solver": solver, "--metric": metric, "--seed": seed, "--evaluations": evaluations,
-        "--time-limit": time_limit,
+        "--light": light, "--proxy": proxy, "--rotation": rotation, "--camera": camera, "--fov": fov,
+        "--mask": mask, "--zone": zone, "--resolution": resolution, "--output": folder, "--domain": domain,
+        "--amplitude": amplitude, "--specular": specular, "--solver": solver, "--metric": metric,
+        "--seed": seed, "--evaluations": evaluations, "--time-limit": time_limit,
     }  # fmt: skip
     setup = read_setup(photo, options, override or [])
     place = FitFolder(output_folder(setup), setup)
@@ -123,19 +147,21 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
             place.begin(keep=start is not None)
             place.save_state(state, picture.sha256)
 
-        view.step("reading the photo and preparing the scene")
         result = search(place.setup, photo=picture, start=start, on_progress=on_progress, on_state=on_state)
         place.begin(keep=start is not None)  # a resumed fit that was complete reports no progress
         place.finish(result)
-        _report(place.path, result, view.step)
+        try:
+            _report(place.path, result, view.step)
+        except KeyboardInterrupt:
+            console.print(f"Stopped before the report was complete; {place.path / DETAIL} is.", markup=False)
+            raise typer.Exit(130) from None
     _tell(place.path, result)
 
 
-def _report(folder: Path, result: FitResult, on_step: object) -> None:
+def _report(folder: Path, result: FitResult, on_step: Callable[[str], None]) -> None:
     from voldetail.apply import gallery
     from voldetail.report import write_report
 
-    assert callable(on_step)
     pictures = gallery(result, on_progress=lambda what: on_step(f"rendering {what}"))
     on_step("writing the report")
     write_report(folder, result, pictures)
@@ -149,10 +175,11 @@ def _tell(folder: Path, result: FitResult) -> None:
     console = output()
     if result.interrupted:
         console.print("Stopped by you: this is the best so far; the same command with --resume goes on.")
-    console.print(verdict(result.distance, result.detail.noise_floor).sentence, markup=False)
-    console.print(
-        f"{result.evaluations} pictures compared in {duration(result.seconds)}; {result.status}.", markup=False
-    )
+    # On a terminal a sentence is wrapped between words; in a file it stays one line.
+    wrap = not console.is_terminal
+    console.print(verdict(result.distance, result.detail.noise_floor).sentence, markup=False, soft_wrap=wrap)
+    spent = f"{result.evaluations} pictures compared in {duration(result.seconds)}"
+    console.print(f"{spent}; {result.status}.", markup=False, soft_wrap=wrap)
     for name, what in (
         (PAGE_NAME, "the report: open it in a browser"), (SHEET_NAME, "the same on one picture"),
         (DETAIL, "the detail: use it with voldetail render, relight and show"),

@@ -28,7 +28,7 @@ KEYS = {
 
 
 def read_setup(photo: str, options: Mapping[str, Any], overrides: Sequence[str]) -> Setup:
-    """Return the Setup of a photo, or of a TOML scene, with ``options`` (by name, None: not given) and -D overrides.
+    """Return the Setup of a photo or a TOML scene, with ``options`` (None: not given) and -D overrides.
 
     Overrides come last. Raises InputError that names the option that is wrong.
     """
@@ -36,8 +36,14 @@ def read_setup(photo: str, options: Mapping[str, Any], overrides: Sequence[str])
     named = [] if scene else [("PHOTO", f"photo.path={json.dumps(photo, ensure_ascii=False)}")]
     for option, value in options.items():
         if value is not None:
-            named += [(f"{option} {printable(str(value))}", text) for text in _overrides(option, value, options)]
-    if not scene and options.get("--light") is None and not any(d.strip().startswith("light") for d in overrides):
+            named += [
+                (f"{option} {printable(str(value))}", text) for text in _overrides(option, value, options)
+            ]
+    if (
+        not scene
+        and options.get("--light") is None
+        and not any(d.strip().startswith("light") for d in overrides)
+    ):
         raise InputError(f"The light of the photo is missing: give --light as {FORMS}.")
     every = [text for _, text in named] + list(overrides)
     where = printable(photo) if scene else "The setup"

@@ -19,11 +19,12 @@ DONE, FAILED, BAD_INPUT, STOPPED = 0, 1, 2, 130  # 130 = 128 + SIGINT, as shells
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line (default: the process's own) and return the exit code.
 
-    0 done; 2 bad input or output, told in one sentence on the error stream; 130 stopped with Ctrl-C; 1 a defect of
-    voldetail itself. `--debug` shows the traceback as well.
+    0 done; 2 bad input or output, told in one sentence on the error stream; 130 stopped with Ctrl-C; 1 a
+    defect of voldetail itself. `--debug` shows the traceback as well.
     """
-    given = list(sys.argv[1:] if arguments is None else arguments)
-    debug = "--debug" in given
+    asked = list(sys.argv[1:] if arguments is None else arguments)
+    given = [word for word in asked if word != "--debug"]  # before or after the command
+    debug = len(given) < len(asked)
     try:
         code = get_command(app).main(given, prog_name="voldetail", standalone_mode=False)
         sys.stdout.flush()
@@ -31,7 +32,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SystemExit as leaving:  # how the parser ends after a reader went away
         return leaving.code if isinstance(leaving.code, int) else FAILED
     except BrokenPipeError:
-        # The reader of our output (`| head`) has what it wanted; Python's own flush at exit must not complain.
+        # The reader of our output (`| head`) has what it wanted; Python's flush at exit must not complain.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except BaseException as error:
@@ -57,11 +58,18 @@ def _judge(error: BaseException) -> tuple[int, str]:
     if isinstance(error, OSError):
         reason = error.strerror or str(error) or type(error).__name__
         where = f" ({error.filename})" if error.filename else ""
-        hint = "free some space" if error.errno in (errno.ENOSPC, errno.EDQUOT) else "check the path and its permissions"
+        hint = (
+            "free some space"
+            if error.errno in (errno.ENOSPC, errno.EDQUOT)
+            else "check the path and its permissions"
+        )
         return BAD_INPUT, f"{reason}{where}; {hint} and try again."
     if isinstance(error, MemoryError):
         return BAD_INPUT, "There is not enough memory; use a smaller --size, --resolution or mesh."
-    return FAILED, f"unexpected {type(error).__name__}: {_line(error)}; run again with --debug and report what it says."
+    return (
+        FAILED,
+        f"unexpected {type(error).__name__}: {_line(error)}; run again with --debug and report what it says.",
+    )
 
 
 def _line(error: BaseException) -> str:

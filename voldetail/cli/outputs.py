@@ -1,4 +1,4 @@
-"""Where results go: checked before any long work, so that nothing is computed for a place that cannot be written."""
+"""Where results go: checked before any long work, so that nothing is computed in vain."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def check_file(path: Path) -> None:
 
 
 def check_folder(path: Path) -> None:
-    """Raise InputError unless the folder ``path`` is there or can be made, and can be written to; makes nothing."""
+    """Raise InputError unless the folder ``path`` can be written to, or be made; makes nothing."""
     place = path
     while not place.exists() and place != place.parent:
         if place.is_symlink():
@@ -39,7 +39,9 @@ def make_folder(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"Cannot make the folder {path}: {error.strerror or error}; give another with -o.") from error
+        raise InputError(
+            f"Cannot make the folder {path}: {error.strerror or error}; give another with -o."
+        ) from error
 
 
 def remove(paths: list[Path]) -> None:
@@ -48,7 +50,9 @@ def remove(paths: list[Path]) -> None:
         try:
             path.unlink(missing_ok=True)
         except OSError as error:
-            raise InputError(f"Cannot replace {path}: {error.strerror or error}; give another folder.") from error
+            raise InputError(
+                f"Cannot replace {path}: {error.strerror or error}; give another folder."
+            ) from error
 
 
 def _check_place(place: Path, wanted: Path) -> None:
@@ -60,4 +64,6 @@ def _check_place(place: Path, wanted: Path) -> None:
         return
     # Some network file systems do not tell, and say 0 of 0.
     if usage.total > 0 and usage.free < LEAST_FREE:
-        raise InputError(f"Cannot write {wanted}: {usage.free / 2**20:.0f} MB are free there; free some space.")
+        raise InputError(
+            f"Cannot write {wanted}: {usage.free / 2**20:.0f} MB are free there; free some space."
+        )

@@ -28,13 +28,16 @@ class ProgressView:
 
     def __init__(self, console: Console, clock: Callable[[], float] = time.monotonic) -> None:
         self.console, self.clock = console, clock
-        self.live = Live(console=console, transient=True, refresh_per_second=4) if console.is_terminal else None
+        self.live = (
+            Live(console=console, transient=True, refresh_per_second=4) if console.is_terminal else None
+        )
         self.last_line = -math.inf
         self.last_stage = ""
 
     def __enter__(self) -> ProgressView:
         if self.live:
             self.live.start()
+            self.live.update(Text("reading the photo and preparing the scene ..."))
         return self
 
     def __exit__(
@@ -63,9 +66,10 @@ class ProgressView:
 
 def line(progress: Progress) -> str:
     """One plain line of progress."""
+    so_far, left = duration(progress.seconds), duration(progress.seconds_left)
     return (
-        f"{progress.stage}: {progress.evaluations} of {progress.planned} pictures, {best_words(progress.best)},"
-        f" {duration(progress.seconds)} so far, about {duration(progress.seconds_left)} left"
+        f"{progress.stage}: {progress.evaluations} of {progress.planned} pictures,"
+        f" {best_words(progress.best)}, {so_far} so far, about {left} left"
     )
 
 
@@ -79,7 +83,10 @@ def _row(progress: Progress) -> Table:
     done = min(progress.evaluations, progress.planned)
     bar = ProgressBar(total=max(progress.planned, 1), completed=done, width=BAR_WIDTH)
     row.add_row(
-        Text(progress.stage, style="bold"), bar, Text(f"{progress.evaluations}/{progress.planned}"),
-        Text(best_words(progress.best), style="green"), Text(f"about {duration(progress.seconds_left)} left"),
+        Text(progress.stage, style="bold"),
+        bar,
+        Text(f"{progress.evaluations}/{progress.planned}"),
+        Text(best_words(progress.best), style="green"),
+        Text(f"about {duration(progress.seconds_left)} left"),
     )
     return row

@@ -30,55 +30,66 @@ class Plan:
     evaluations: int
 
 
-DEFAULT_COARSE = 408
-DEFAULT_REGIONS = 6
-DEFAULT_REGION_STEPS = 80
-DEFAULT_FINALISTS = 2
-DEFAULT_FINALIST_STEPS = 130
-DEFAULT_LAST_STEPS = 170
+COVER = 408
+"""Samples that cover the space, 24 for each of the 17 families of noise."""
+
+ROUNDS = ((14, 60, False), (7, 70, False), (4, 90, True), (2, 120, True))
+"""Successive halving: candidates kept, evaluations for each, at full resolution or half. A family that is only badly
+sampled so far gets its chance, and most of the effort goes where it pays."""
+
+LAST = 160
 UNSEEN_SEEDS = 3
-"""Numbers of the default plan, tuned on the recovery cases of tests/benchmarks and six photos so that a fit stays under
-a minute on two cores."""
+"""Numbers of the default plan; tuned on the recovery cases of tests/benchmarks and six photos, for a fit of about a
+minute on two cores."""
 
 
 def default_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
-    """Return our plan: cover the space at half resolution, search the best regions, refine the best few.
+    """Return our plan: cover the space at half resolution, then CMA-ES from ever fewer candidates.
 
     ``evaluations`` scales every stage; None means the tuned numbers.
     """
-    total = DEFAULT_COARSE + DEFAULT_REGIONS * DEFAULT_REGION_STEPS + DEFAULT_FINALISTS * DEFAULT_FINALIST_STEPS
-    total += DEFAULT_LAST_STEPS + UNSEEN_SEEDS * (DEFAULT_REGIONS + 2 * DEFAULT_FINALISTS)
+    ranked = sum(count * UNSEEN_SEEDS for count, _, fine in ROUNDS if fine) + 2 * UNSEEN_SEEDS
+    total = COVER + sum(count * each for count, each, _ in ROUNDS) + LAST + ranked
     factor = 1.0 if evaluations is None else evaluations / total
 
     def scaled(count: int) -> int:
         return max(4, round(count * factor))
 
     def cover(session: Session) -> None:
-        candidates = sampled(session.space, scaled(DEFAULT_COARSE), derived_seed(session.root_seed, "cover"), anisotropy)
+        candidates = sampled(session.space, scaled(COVER), derived_seed(session.root_seed, "cover"), anisotropy)
         session.pool = [
             replace(c, value=session.value(session.coarse, c.kind, c.vector, session.noise_seed(0))) for c in candidates
         ]
-        session.pool = best_distinct(session.pool, DEFAULT_REGIONS)
+        session.pool = best_distinct(session.pool, ROUNDS[0][0])
 
-    def regions(session: Session) -> None:
-        _refine_pool(session, scaled(DEFAULT_REGION_STEPS), fine=False)
-        _rank(session, fine=True)
-        session.pool = session.pool[:DEFAULT_FINALISTS]
+    def halving(index: int) -> Callable[[Session], None]:
+        count, each, fine = ROUNDS[index]
 
-    def finalists(session: Session) -> None:
-        _refine_pool(session, scaled(DEFAULT_FINALIST_STEPS), fine=True)
-        _rank(session, fine=True)
+        def run(session: Session) -> None:
+            session.pool = session.pool[:count]
+            _refine_pool(session, scaled(each), fine=fine)
+            if fine:
+                _rank(session)
+            else:
+                session.pool.sort(key=lambda c: c.value)
+
+        return run
 
     def last(session: Session) -> None:
-        session.pool = session.pool[:1] + session.pool[:1]  # what was there, and what becomes of it
-        kept = session.pool[0]
-        _refine_one(session, 1, scaled(DEFAULT_LAST_STEPS), fine=True)
-        session.pool = [session.pool[1], kept]
-        _rank(session, fine=True)
+        before = session.pool[0]
+        session.pool = [before]
+        _refine_one(session, 0, scaled(LAST), fine=True)
+        # What was there stays in the race: the last search may have fitted its own seeds only.
+        session.pool = [session.pool[0], before]
+        _rank(session)
 
+    names = ("trying every family", "searching the better half", "refining the best four", "refining the best two")
     return Plan(
-        (Stage("covering the space", cover), Stage("searching the best regions", regions),
-         Stage("refining the best few", finalists), Stage("refining the best", last)),
+        (
+            Stage("covering the space", cover),
+            *(Stage(name, halving(index)) for index, name in enumerate(names)),
+            Stage("refining the best", last),
+        ),
         evaluations or total,
     )
 
@@ -136,12 +147,11 @@ def _refine_one(
     session.save()
 
 
-def _rank(session: Session, *, fine: bool) -> None:
+def _rank(session: Session) -> None:
     """Sort the pool by the mean distance under seeds that nothing was fitted to."""
-    objective = session.fine if fine else session.coarse
     for index, candidate in enumerate(session.pool):
         values = [
-            session.value(objective, candidate.kind, candidate.vector, session.unseen_seed(seed))
+            session.value(session.fine, candidate.kind, candidate.vector, session.unseen_seed(seed))
             for seed in range(UNSEEN_SEEDS)
         ]
         session.pool[index] = replace(candidate, value=float(np.mean(values)))

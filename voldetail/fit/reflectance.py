@@ -25,6 +25,8 @@ STEPS = 3
 SAMPLES = 9000
 """Pixels used at most: enough for 24 groups of some 400."""
 
+DESCENT_STEPS = 300
+
 DARK = 0.03
 """Linear luminance below which differences count less and less, in the weights 1 / (q + DARK): about where sRGB's curve
 leaves its linear part."""
@@ -53,9 +55,12 @@ def solve(photo: NDArray[np.float32], parts: Components, mask: NDArray[np.bool_]
     ambient, diffuse = parts.ambient.ravel()[index], parts.diffuse.ravel()[index]
     best: Coefficients | None = None
     lobes = range(len(parts.shininess)) if specular else (-1,)
+    start, steps = np.array([0.3, 0.5]), STEPS
     for lobe in lobes:
         columns = [ambient, diffuse] + ([parts.specular[lobe].ravel()[index]] if lobe >= 0 else [])
-        found, residual = _alternate(np.stack(columns, axis=1).astype(np.float64), wanted, weights)
+        found, residual = _alternate(np.stack(columns, axis=1).astype(np.float64), wanted, weights, start, steps)
+        # The other lobes start where the first one ended, so one step less settles them.
+        start, steps = found[:2], STEPS - 1
         if best is None or residual < best.residual:
             gloss = float(found[2]) if lobe >= 0 else 0.0
             exponent = parts.shininess[lobe] if lobe >= 0 else parts.shininess[0]
@@ -73,12 +78,13 @@ def _group_means(values: NDArray[np.floating]) -> NDArray[np.float64]:
 
 
 def _alternate(
-    columns: NDArray[np.float64], wanted: NDArray[np.float64], weights: NDArray[np.float64]
+    columns: NDArray[np.float64], wanted: NDArray[np.float64], weights: NDArray[np.float64],
+    start: NDArray[np.float64], steps: int,
 ) -> tuple[NDArray[np.float64], float]:
     """Alternate between sorting the picture and solving for its coefficients."""
-    current = np.array([0.3, 0.5, 0.05][: columns.shape[1]])
+    current = np.append(start, 0.05)[: columns.shape[1]]
     residual = np.inf
-    for _ in range(STEPS):
+    for _ in range(steps):
         order = np.argsort(columns @ current)
         means = _group_means(columns[order])
         current = bounded_least_squares(means * weights[:, None], wanted * weights)
@@ -87,23 +93,27 @@ def _alternate(
 
 
 def bounded_least_squares(matrix: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return x in [0, 1]^k, k at most 3, that minimises |matrix x - values|: the best of all faces of the cube.
+    """Return x in [0, 1]^k that minimises |matrix x - values|.
 
-    With three unknowns the 27 combinations of free, 0 and 1 are fewer steps than a general solver takes to start.
+    The free solution where it obeys the bounds, else coordinate descent from it, which for a convex problem in a box ends
+    at the optimum. With three unknowns that is a tenth of the time a general solver takes.
     """
-    count = matrix.shape[1]
     gram, right = matrix.T @ matrix, matrix.T @ values
-    best, best_cost = np.zeros(count), np.inf
-    for face in range(3**count):
-        state = [(face // 3**i) % 3 for i in range(count)]  # 0 free, 1 at zero, 2 at one
-        x = np.array([1.0 if s == 2 else 0.0 for s in state])
-        free = [i for i, s in enumerate(state) if s == 0]
-        if free:
-            part = gram[np.ix_(free, free)] + 1e-9 * np.eye(len(free))
-            x[free] = np.linalg.solve(part, right[free] - gram[free] @ x)
-            if (x[free] < 0).any() or (x[free] > 1).any():
-                continue
-        cost = float(x @ gram @ x - 2 * right @ x)
-        if cost < best_cost - 1e-12:
-            best, best_cost = x, cost
-    return best
+    count = len(right)
+    # A trace of ridge keeps columns that are zero (no highlight, all in shadow) from making the system singular.
+    gram = gram + (1e-9 * float(np.trace(gram)) + 1e-12) * np.eye(count)
+    free = np.linalg.solve(gram, right)
+    if free.min() >= 0.0 and free.max() <= 1.0:
+        return np.asarray(free)
+    rows, target = gram.tolist(), right.tolist()
+    x = [min(max(v, 0.0), 1.0) for v in free.tolist()]
+    for _ in range(DESCENT_STEPS):
+        change = 0.0
+        for i in range(count):
+            rest = target[i] - sum(rows[i][j] * x[j] for j in range(count) if j != i)
+            new = min(max(rest / rows[i][i], 0.0), 1.0)
+            change = max(change, abs(new - x[i]))
+            x[i] = new
+        if change < 1e-7:
+            break
+    return np.array(x)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -15,7 +16,6 @@ import numpy as np
 from pydantic import Field, JsonValue, ValidationError
 
 from voldetail import __version__
-from voldetail.detail import ALLOWED_NEIGHBOURS
 from voldetail.detail.reading import read_small_text
 from voldetail.detail.record import Record, Sha256
 from voldetail.detail.refusal import printable, refusal, shown
@@ -23,7 +23,7 @@ from voldetail.errors import InputError
 from voldetail.files import sha256, write_text
 from voldetail.fit.candidates import Candidate
 from voldetail.fit.session import State
-from voldetail.fit.space import Kind, Space
+from voldetail.fit.space import FOLDS, Kind, Space
 from voldetail.scene.setup import Setup
 
 FORMAT = "voldetail.state"
@@ -47,17 +47,11 @@ _Unit = Annotated[
 ]  # searched in [0, 1], but angles wrap and may have gone round
 
 
-class _KindRecord(Record):
-    first: int
-    last: int
-    envelope: Literal["exponential", "gaussian"]
-    octaves: Annotated[int, Field(ge=1, le=8)]
-    striped: bool
-    fold: Literal["none", "ridge", "billow"]
+_PLAIN: dict[str, type] = {"int": int, "str": str, "bool": bool}  # NumPy's own kinds of number are not JSON
 
 
 class _CandidateRecord(Record):
-    kind: _KindRecord
+    kind: dict[str, bool | int | str]
     vector: Annotated[tuple[_Unit, ...], Field(max_length=MOST_NUMBERS)]
     value: float | None  # null: not evaluated yet
     spread: Annotated[float, Field(gt=0, le=10)]
@@ -92,11 +86,11 @@ def save_state(path: Path, state: State, setup: Setup, photo_sha256: str) -> Non
     """
     pool = [
         {
-            "kind": vars(c.kind),
+            "kind": {f.name: _PLAIN[str(f.type)](getattr(c.kind, f.name)) for f in fields(Kind)},
             "vector": np.asarray(c.vector, dtype=float).tolist(),
             "value": float(c.value) if math.isfinite(c.value) else None,
             "spread": float(c.spread),
-            "spent": c.spent,
+            "spent": int(c.spent),
         }
         for c in state.pool
     ]
@@ -104,8 +98,8 @@ def save_state(path: Path, state: State, setup: Setup, photo_sha256: str) -> Non
         "format": FORMAT,
         "version": STATE_VERSION,
         "belongs": _belongs(setup, photo_sha256),
-        "stage": state.stage,
-        "evaluations": state.evaluations,
+        "stage": int(state.stage),
+        "evaluations": int(state.evaluations),
         "seconds": float(state.seconds),
         "pool": pool,
         "trace": [[int(count), float(best)] for count, best in state.trace],
@@ -117,8 +111,8 @@ def save_state(path: Path, state: State, setup: Setup, photo_sha256: str) -> Non
 def load_state(path: Path, setup: Setup, photo_sha256: str) -> State:
     """Return the State in ``path`` if it belongs to ``setup`` and the photo of ``photo_sha256``.
 
-    Raises InputError if the file is missing, too large, not such a file, of another version, inconsistent, or if
-    it belongs to another photo, mask, mesh or setup; the budget of evaluations and time may differ.
+    Raises InputError if the file is missing, too large, not such a file, of another version, inconsistent, or
+    if it belongs to another photo, mask, mesh or setup; the budget of evaluations and time may differ.
     """
     where = printable(str(path))
     text = read_small_text(path, "state file")
@@ -182,15 +176,24 @@ def _flat(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
 
 
 def _candidate(record: _CandidateRecord, setup: Setup, where: str) -> Candidate:
-    kind = Kind(**record.kind.model_dump())
-    # The names do not depend on the bounds of the space.
-    names = Space(setup.domain, (1.0, 2.0), 2.0, setup.amplitude).names(kind)
-    if len(record.vector) != len(names) or (kind.first, kind.last) not in ALLOWED_NEIGHBOURS:
+    # Strings, since annotations are not evaluated; "bool" is no "int" here.
+    types = {field.name: field.type for field in fields(Kind)}
+    vector = np.array(record.vector, dtype=np.float64)
+    try:
+        if {name: type(value).__name__ for name, value in record.kind.items()} != types:
+            raise ValueError(record.kind)
+        kind = Kind(**record.kind)  # type: ignore[arg-type]
+        if kind.fold not in FOLDS:
+            raise ValueError(kind.fold)
+        # The bounds do not matter here: a detail that can be made is one that can be searched.
+        Space(setup.domain, (1.0, 2.0), 2.0, setup.amplitude).decode(kind, vector)
+    except (ValueError, TypeError, OverflowError):
         raise InputError(
             f"{where} holds a candidate that this setup cannot have; start again without --resume."
-        )
-    value = math.inf if record.value is None else record.value
-    return Candidate(kind, np.array(record.vector, dtype=np.float64), value, record.spread, record.spent)
+        ) from None
+    return Candidate(
+        kind, vector, math.inf if record.value is None else record.value, record.spread, record.spent
+    )
 
 
 def _no_constant(name: str) -> float:

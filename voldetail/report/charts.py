@@ -102,7 +102,7 @@ def draw_convergence(axes: Axes, ink: Ink, result: FitResult) -> None:
     if count[0] > 0.25 * count[-1]:
         words = "searching at\nhalf resolution"
         middle = 0.5 * count[0] / axes.get_xlim()[1]
-        place = {"transform": axes.transAxes, "ha": "center", "va": "center"}
+        place: dict[str, Any] = {"transform": axes.transAxes, "ha": "center", "va": "center"}
         axes.text(middle, 0.6, words, fontsize=8, color=ink.text, **place)
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.yaxis.set_minor_formatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in "25" else "")

@@ -84,3 +84,9 @@ def _palette(frames: Sequence[NDArray[np.uint8]]) -> Image.Image:
     step = max(1, math.isqrt(sum(f.shape[0] * f.shape[1] for f in frames) // 200_000))
     pixels = np.concatenate([f[::step, ::step].reshape(-1, 3) for f in frames])
     return Image.fromarray(np.ascontiguousarray(pixels[None])).quantize(256, method=Image.Quantize.MEDIANCUT)
+
+
+def thumbnail(picture: NDArray[Any]) -> NDArray[np.float32]:
+    """A linear picture as large as the contact sheet needs it."""
+    width = min(LARGEST_TILE, picture.shape[1])
+    return resize(picture, (max(1, round(picture.shape[0] * width / picture.shape[1])), width))

@@ -28,8 +28,8 @@ class Verdict:
 def verdict(distance: float, floor: NoiseFloor) -> Verdict:
     """Judge M between photo and fit by M between the photo's halves or, where unknown, between two seeds.
 
-    Two halves of one photo, or two renderings of one detail with other random numbers, are the same texture to
-    anyone: a fit cannot be asked to be nearer than they are to each other.
+    Two halves of one photo, or two renderings of one detail with other random numbers, are the same texture
+    to anyone: a fit cannot be asked to be nearer than they are to each other.
     """
     if not math.isfinite(distance):
         return Verdict("no match", "The fit could not be compared with the photo.", None)

@@ -1,0 +1,207 @@
+"""`voldetail render` and `voldetail relight`: a detail on other shapes and under other lights."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from voldetail.cli.arguments import angles, mesh, numbers, size
+from voldetail.cli.console import output, remarks
+from voldetail.cli.outputs import check_file, check_folder, make_folder, remove
+from voldetail.cli.threads import use_threads
+from voldetail.detail import load_detail
+from voldetail.errors import InputError
+from voldetail.files import readable
+
+if TYPE_CHECKING:
+    from voldetail.scene.setup import CameraSetup
+
+DETAIL_HELP = "A detail file, as fit makes it."
+MESH_HELP = "plane, sphere, ellipsoid, box, cylinder, or a mesh file."
+ENVIRONMENT_BYTES = 2**30
+ENVIRONMENT_SUFFIXES = (".exr", ".hdr")
+ANIMATION_SECONDS = 0.12  # a frame
+MOST_FRAMES = 720
+
+_Scale = Annotated[
+    float, typer.Option(min=1e-3, max=1e3, help="How many times larger the relief is than in the photo.")
+]
+_Rotation = Annotated[
+    str | None, typer.Option(help="The shape's turns about x, y, z in degrees, e.g. -60,0,0.")
+]
+_Fov = Annotated[
+    float | None,
+    typer.Option(min=1, max=150, help="Degrees across; a perspective camera. Default: orthographic."),
+]
+_Background = Annotated[
+    float, typer.Option(min=0, max=1e3, help="Light where there is no surface: 0 is black.")
+]
+_Subsamples = Annotated[int, typer.Option(min=1, max=8, help="Samples a pixel, each way, under a light.")]
+_Detail = Annotated[Path, typer.Argument(help=DETAIL_HELP)]
+
+
+def render(
+    context: typer.Context,
+    detail: _Detail,
+    shape: Annotated[str, typer.Argument(metavar="MESH", help=MESH_HELP)],
+    out: Annotated[Path, typer.Option("--output", "-o", help="The picture: .png, .jpg or .exr (linear).")],
+    light: Annotated[
+        str | None, typer.Option(help="AZ,EL in degrees, x,y,z or point:x,y,z. Default: 135,45.")
+    ] = None,
+    envmap: Annotated[
+        Path | None, typer.Option(help="Light from an environment map (.exr or .hdr) instead.")
+    ] = None,
+    scale: _Scale = 1.0,
+    pixels: Annotated[str, typer.Option("--size", help="WIDTHxHEIGHT in pixels.")] = "640x480",
+    shading: Annotated[
+        str, typer.Option(help="phong (as fitted) or principled (physically based).")
+    ] = "phong",
+    rotation: _Rotation = None,
+    fov: _Fov = None,
+    samples: Annotated[
+        int, typer.Option(min=1, max=65536, help="Samples a pixel, for --envmap and principled.")
+    ] = 64,
+    subsamples: _Subsamples = 2,
+    background: _Background = 0.0,
+) -> None:
+    """Render a detail on a shape, under a light or an environment map."""
+    from voldetail.apply import render as picture_of
+    from voldetail.image import check_suffix, save_image
+    from voldetail.scene.lights_text import parse_light
+
+    check_suffix(out)
+    check_file(out)
+    record = load_detail(detail)
+    if light is not None and envmap is not None:
+        raise InputError("--light and --envmap were both given; choose one.")
+    if shading not in ("phong", "principled"):
+        raise InputError(f"--shading {shading!r} is not known; use phong or principled.")
+    options: dict[str, Any] = {
+        "light": parse_light(light) if light is not None else None,
+        "envmap": _environment(envmap) if envmap is not None else None,
+        "scale": scale, "size": size(pixels), "camera": _camera(fov), "rotation": _rotation(rotation),
+        "subsamples": subsamples, "samples": samples, "shading": shading, "background": background,
+    }  # fmt: skip
+    shape = _shape(shape)
+    use_threads(context.obj)
+    with remarks().status(f"rendering {shape}"):
+        picture = picture_of(record, shape, **options)
+    save_image(out, picture)
+    output().print(f"{out}  {picture.shape[1]} x {picture.shape[0]} pixels", markup=False, soft_wrap=True)
+
+
+def relight(
+    context: typer.Context,
+    detail: _Detail,
+    azimuth: Annotated[
+        str,
+        typer.Option(
+            help="Degrees: one, a list as 0,90, or START:STOP:COUNT steps without STOP, as 0:360:12."
+        ),
+    ],
+    elevation: Annotated[str, typer.Option(help="Degrees above the picture, over 0 to 90; as azimuth.")],
+    folder: Annotated[Path, typer.Option("--output", "-o", help="The folder for the pictures.")],
+    shape: Annotated[str, typer.Argument(metavar="[MESH]", help=MESH_HELP)] = "plane",
+    scale: _Scale = 1.0,
+    pixels: Annotated[str, typer.Option("--size", help="WIDTHxHEIGHT in pixels.")] = "480x480",
+    rotation: _Rotation = None,
+    fov: _Fov = None,
+    subsamples: _Subsamples = 2,
+    background: _Background = 0.0,
+    animation: Annotated[str, typer.Option(help="gif, png (animated, more colours) or none.")] = "gif",
+    force: Annotated[bool, typer.Option("--force", help="Replace the frames in the folder.")] = False,
+) -> None:
+    """Render a detail under many lights: frames, a contact sheet (sheet.png) and an animation.
+
+    Each elevation is gone through with every azimuth. Without MESH it is a plane that fills the picture.
+    """
+    from voldetail.apply import relight as frames_of
+
+    azimuths = angles(azimuth, "--azimuth", lambda a: -720 <= a <= 720, "-720 to 720")
+    elevations = angles(elevation, "--elevation", lambda e: 0 < e <= 90, "over 0 to 90")
+    count = len(azimuths) * len(elevations)
+    if count > MOST_FRAMES:
+        raise InputError(f"These angles make {count} pictures; at most {MOST_FRAMES} are allowed.")
+    if animation not in ("gif", "png", "none"):
+        raise InputError(f"--animation {animation!r} is not known; use gif, png or none.")
+    record = load_detail(detail)
+    earlier = _free_folder(folder, force)
+    wide, turned, camera, shape = size(pixels), _rotation(rotation), _camera(fov), _shape(shape)
+    use_threads(context.obj)
+    frames = frames_of(
+        record, shape, azimuths=azimuths, elevations=elevations, scale=scale, size=wide, camera=camera,
+        rotation=turned, subsamples=subsamples, background=background,
+    )  # fmt: skip
+    _write_frames(folder, earlier, frames, count, animation, record.name)
+    output().print(f"{folder}  {count} frames, sheet.png" + _animation_words(animation, count), markup=False)
+
+
+def _write_frames(
+    folder: Path, earlier: list[Path], frames: Any, count: int, animation: str, name: str
+) -> None:
+    """Write each frame as it comes, then the sheet and the animation."""
+    from voldetail.image import save_png
+    from voldetail.report import write_animation, write_contact_sheet
+    from voldetail.report.frames import thumbnail
+    from voldetail.report.pictures import encoded
+
+    small, moving = [], []
+    with remarks().status(f"rendering {count} pictures") as status:
+        for index, (azimuth, elevation, picture) in enumerate(frames):
+            if index == 0:
+                make_folder(folder)
+                remove(earlier)
+            save_png(folder / f"frame-{index:03d}-az{azimuth:g}-el{elevation:g}.png", picture)
+            small.append((f"azimuth {azimuth:g}, elevation {elevation:g}", thumbnail(picture)))
+            if animation != "none":
+                moving.append(encoded(picture))
+            status.update(f"rendering: {index + 1} of {count} pictures")
+        write_contact_sheet(folder / "sheet.png", small, f"{name}: light from {count} sides (degrees)")
+        if len(moving) > 1:
+            write_animation(folder / f"animation.{animation}", moving, ANIMATION_SECONDS * count)
+
+
+def _animation_words(animation: str, count: int) -> str:
+    return f" and animation.{animation}" if animation != "none" and count > 1 else ""
+
+
+def _free_folder(folder: Path, force: bool) -> list[Path]:
+    """Check the folder for the frames; return the frames of an earlier run in it, which ``force`` lets go."""
+    check_folder(folder)
+    earlier = sorted(
+        p for p in folder.glob("*") if p.name.startswith(("frame-", "animation.")) or p.name == "sheet.png"
+    )
+    if earlier and not force:
+        raise InputError(
+            f"{folder} holds {earlier[0].name} already; give --force to replace it, or another folder."
+        )
+    return earlier
+
+
+def _camera(fov: float | None) -> CameraSetup | None:
+    from voldetail.scene.setup import CameraSetup
+
+    return None if fov is None else CameraSetup(kind="perspective", field_of_view=fov)
+
+
+def _rotation(text: str | None) -> tuple[float, float, float]:
+    if text is None:
+        return (0.0, 0.0, 0.0)
+    x, y, z = numbers(text, 3, "--rotation", "X,Y,Z in degrees")
+    return (x, y, z)
+
+
+def _shape(text: str) -> str:
+    from voldetail.apply import KINDS
+    from voldetail.scene.mesh_files import SUFFIXES
+
+    return mesh(text, KINDS, SUFFIXES)
+
+
+def _environment(path: Path) -> Path:
+    readable(path, "environment map", ENVIRONMENT_BYTES)
+    if path.suffix.lower() not in ENVIRONMENT_SUFFIXES:
+        raise InputError(f"The environment map {path} is not a .exr or .hdr file; convert it to OpenEXR.")
+    return path
