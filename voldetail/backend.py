@@ -69,10 +69,14 @@ def find_llvm() -> Path:
     if own:
         version = llvm_version(Path(own))
         if version is None:
-            raise BackendError(f"DRJIT_LIBLLVM_PATH={own} is not an LLVM library that can be loaded: unset it or correct it")
+            raise BackendError(
+                f"DRJIT_LIBLLVM_PATH={own} cannot be loaded as an LLVM library, or is one older than 16, which aborts"
+                f" Mitsuba: give {MINIMUM_LLVM} or newer, or unset it"
+            )
         if version < MINIMUM_LLVM:
             raise BackendError(
-                f"DRJIT_LIBLLVM_PATH={own} is LLVM {version}, which aborts Mitsuba: give {MINIMUM_LLVM} or newer, or unset it"
+                f"DRJIT_LIBLLVM_PATH={own} is LLVM {version}, which can abort Mitsuba: give {MINIMUM_LLVM} or newer,"
+                " or unset it"
             )
         return Path(own)
     # Newest by its file name first, so that usually one library is asked.

@@ -4,16 +4,15 @@ Under one light and a uniform sky the picture is linear in the three coefficient
 
     I = Ka A + Kd D + Ks S_n
 
-A: share of the sky that is seen, cosine-weighted; 1 on a bare plane. D: E max(0, n . l) V. Both carry the factor by which
-albedo varies with height and grain. S_n: the modified Phong lobe
-(n + 2) / 2 cos^n(alpha) E max(0, n . l) V, alpha between the view and the mirrored light; E irradiance over pi, V the
-visibility of the light. Sample positions are a fixed grid in each pixel: no grain, so the metric never sees any.
+A: share of the sky that is seen, cosine-weighted; 1 on a bare plane. D: E max(0, n . l) V. Both carry the factor by
+which albedo varies with height and grain. S_n: the modified Phong lobe (n + 2) / 2 cos^n(alpha) E max(0, n . l) V,
+alpha between the view and the mirrored light; E irradiance over pi, V the visibility of the light. Sample positions are
+a fixed grid in each pixel: no grain, so the metric never sees any.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -24,9 +23,10 @@ from voldetail.detail import Reflectance
 from voldetail.scene.heightfield import HeightField
 from voldetail.scene.lamp import Lamp
 from voldetail.scene.surface import MeshSurface
+from voldetail.scene.traced import path_integrator, sensor_of
 
 SHININESS = (4.0, 16.0, 64.0)
-"""Exponents whose lobes are rendered for the reflectance solve; a factor of 4 apart, about a factor of 2 in lobe width."""
+"""Exponents whose lobes are rendered for the reflectance solve; a factor of 4 apart, about 2 in the lobe's width."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Components:
         return np.asarray(picture, dtype=np.float32)
 
     def colour(self, reflectance: Reflectance) -> NDArray[np.float32]:
-        """Return the picture (H, W, 3) under ``reflectance``: its tint colours ambient and diffuse, not the highlight."""
+        """Return the picture (H, W, 3) under ``reflectance``: its tint colours all but the highlight."""
         tint = np.asarray(reflectance.tint, dtype=np.float32)
         matt = reflectance.ambient * self.ambient + reflectance.diffuse * self.diffuse
         gloss = self.luminance(0.0, 0.0, reflectance.specular, reflectance.shininess)
@@ -98,28 +98,9 @@ def traced_picture(surface: MeshSurface, samples: int, background: float, seed: 
 
     Where there is no surface it is ``background``: the environment lights the object and is not itself shown.
     """
-    mi = mitsuba()
-    view = surface.view
-    half_wide = (view.right - view.left) / 2
-    film = {
-        "type": "hdrfilm", "width": view.columns, "height": view.rows, "pixel_format": "rgba",
-        "component_format": "float32", "rfilter": {"type": "box"},
-    }
-    if view.perspective:
-        angle = 2.0 * np.degrees(np.arctan(half_wide / view.distance))
-        sensor = {
-            "type": "perspective", "fov": float(angle), "fov_axis": "x",
-            "to_world": mi.ScalarTransform4f().look_at([0, 0, view.distance], [0, 0, 0], [0, 1, 0]), "film": film,
-        }
-    else:
-        placed = mi.ScalarTransform4f().look_at([0, 0, view.distance], [0, 0, 0], [0, 1, 0])
-        sensor = {
-            "type": "orthographic", "film": film,
-            "to_world": placed @ mi.ScalarTransform4f().scale([half_wide, half_wide, 1.0]),
-        }
-    integrator = mi.load_dict({"type": "path", "max_depth": 4, "hide_emitters": True})
+    sensor, integrator = sensor_of(surface.view), path_integrator()
     picture = np.asarray(
-        mi.render(surface.scene, sensor=mi.load_dict(sensor), integrator=integrator, spp=samples, seed=seed)
+        mitsuba().render(surface.scene, sensor=sensor, integrator=integrator, spp=samples, seed=seed)
     )
     colour, covered = picture[..., :3], picture[..., 3:4]
     return np.asarray(colour + (1.0 - covered) * background, dtype=np.float32)

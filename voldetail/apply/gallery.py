@@ -1,4 +1,4 @@
-"""The pictures of a fit's report: what was fitted, and the same detail under other lights, views and on other shapes."""
+"""The pictures of a fit's report: what was fitted, and the detail under other lights, views and on other shapes."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation, binary_erosion
 
-from voldetail.apply.onmesh import relight, render
+from voldetail.apply.onmesh import render
 from voldetail.image import resize
 from voldetail.render import components
-from voldetail.scene.build import build
+from voldetail.scene.build import build, faces_camera
 from voldetail.scene.lamp import Lamp
 from voldetail.scene.lights_text import direction_of
-from voldetail.scene.setup import CameraSetup, Light, PhotoSetup, ProxySetup, Setup
+from voldetail.scene.setup import CameraSetup, Light, PhotoSetup, Setup
 
 Picture = NDArray[np.float32]
 
@@ -35,9 +35,9 @@ SHAPE_SIDE = 360
 class Gallery:
     """Pictures (H, W, 3), linear.
 
-    photo: the zone at working resolution; mask (H, W): its used pixels; overlay: the whole photo with the zone, the mask
-    and the proxy drawn over it; fitted: the rendering under the photo's light; lights: captions and renderings under
-    four others; grazing: a tilted plane; sphere; mesh with its name.
+    photo: the zone at working resolution; mask (H, W): its used pixels; overlay: the whole photo with the zone, the
+    mask and the proxy drawn over it; fitted: the rendering under the photo's light; lights: captions and renderings
+    under four others; grazing: a tilted plane; sphere; mesh with its name.
     """
 
     photo: Picture
@@ -66,13 +66,13 @@ def gallery(
     on_progress("the fit and four other lights")
     fitted = under(target.lamp)
     lights = tuple(
-        (f"light from {_side(azimuth)}, {elevation:g}\N{DEGREE SIGN} high", under(Lamp(direction_of(azimuth, elevation))))
-        for azimuth, elevation in OTHER_LIGHTS
+        (f"light from {_side(azimuth)}, {up:g}\N{DEGREE SIGN} high", under(Lamp(direction_of(azimuth, up))))
+        for azimuth, up in OTHER_LIGHTS
     )
     on_progress("a grazing view")
     side = (SHAPE_SIDE, SHAPE_SIDE)
     lamp = Light(direction=direction_of(160.0, 40.0))
-    # The relief keeps the size it has in the photo, where a proxy is 2 across; larger cells show more on a small picture.
+    # The relief keeps the size it has in the photo, where a proxy is 2 across.
     scale = 1.0
     grazing = render(
         detail, "plane", light=lamp, scale=scale, size=side, rotation=(GRAZING_TILT, 0.0, 0.0),
@@ -117,13 +117,9 @@ def _outline(
     setup: Setup, shape: tuple[int, int], size: tuple[int, int]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Return (edge of the proxy in the photo, where it is) as masks of ``size``; a plane that fills it has no edge."""
-    from voldetail.scene.build import faces_camera
-
     if faces_camera(setup):
         return np.zeros(size, dtype=bool), np.ones(size, dtype=bool)
-    small = setup.model_copy(
-        update={"photo": PhotoSetup(path=setup.photo.path, resolution=max(size)), "proxy": ProxySetup(**dict(setup.proxy))}
-    )
+    small = setup.model_copy(update={"photo": PhotoSetup(path=setup.photo.path, resolution=max(size))})
     surface = build(small, shape, None)
     parts = components(surface, Lamp((0.0, 0.0, 1.0)), subsamples=1, shininess=())
     inside = parts.covered[: size[0], : size[1]] > 0.5

@@ -1,8 +1,7 @@
-"""The same detail in another setup: other meshes, other lights, and the pictures of a report."""
+"""The same detail in another setup: other meshes, other lights."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Literal, get_args
@@ -10,7 +9,6 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from voldetail.backend import mitsuba
 from voldetail.detail import Detail
 from voldetail.errors import InputError
 from voldetail.render import components, traced_picture
@@ -21,6 +19,7 @@ from voldetail.scene.phong import phong_dict, principled_equivalent
 from voldetail.scene.proxy import Proxy, make_proxy
 from voldetail.scene.setup import CameraSetup, Light, ProxySetup
 from voldetail.scene.surface import MeshSurface
+from voldetail.scene.traced import emitters_of
 from voldetail.scene.view import View, whole_view
 
 Picture = NDArray[np.float32]
@@ -31,7 +30,7 @@ FLAT_MARGIN = 1.0
 """A plane is shown filling the picture; other shapes get the margin of `whole_view`."""
 
 PIXELS_AN_EDGE = 1.0
-"""Length of the mesh's edges in pixels: about one, so that relief and shading lose nothing that the picture could show."""
+"""Length of the mesh's edges in pixels: about one, so that relief and shading lose nothing that a picture can show."""
 
 
 def render(
@@ -56,7 +55,9 @@ def render(
     if envmap is not None:
         emitters = {"environment": environment_emitter(envmap)}
     elif shading == "principled":
-        emitters = _emitters(detail, light)
+        # A sky as bright as the ambient term makes it on a matt surface.
+        r = detail.reflectance
+        emitters = emitters_of(lamp_of(light), r.ambient / r.diffuse if r.diffuse > 1e-6 else 0.0)
     surface = MeshSurface(
         _proxy(detail, mesh, view, rotation), view, scale=scale, bsdf=_bsdf(detail, shading), emitters=emitters,
         one_sided_sky=str(mesh) == "plane",
@@ -126,25 +127,4 @@ def _bsdf(detail: Detail, shading: Shading) -> dict[str, Any]:
     diffuse = [min(r.diffuse * c, 1.0) for c in r.tint]
     if shading == "principled":
         return principled_equivalent(diffuse, r.specular, r.shininess)
-    mitsuba()
     return phong_dict(diffuse, r.specular, r.shininess)
-
-
-def _emitters(detail: Detail, light: Light) -> dict[str, Any]:
-    """Return Mitsuba emitters: the light, and a sky as bright as the ambient term makes it."""
-    r = detail.reflectance
-    sky = r.ambient / r.diffuse if r.diffuse > 1e-6 else 0.0
-    emitters: dict[str, Any] = {"sky": {"type": "constant", "radiance": {"type": "rgb", "value": [sky] * 3}}}
-    lamp = lamp_of(light)
-    if lamp.direction is not None:
-        emitters["light"] = {
-            "type": "directional", "direction": [-v for v in lamp.direction],
-            "irradiance": {"type": "rgb", "value": [math.pi * lamp.strength] * 3},
-        }
-    else:
-        assert lamp.position is not None
-        power = math.pi * lamp.strength * lamp.position[2] ** 2
-        emitters["light"] = {
-            "type": "point", "position": list(lamp.position), "intensity": {"type": "rgb", "value": [power] * 3}
-        }
-    return emitters

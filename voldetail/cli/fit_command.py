@@ -153,7 +153,8 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
         try:
             _report(place.path, result, view.step)
         except KeyboardInterrupt:
-            console.print(f"Stopped before the report was complete; {place.path / DETAIL} is.", markup=False)
+            words = f"Stopped before the report was complete; {place.path / DETAIL} is."
+            console.print(words, markup=False, soft_wrap=True)
             raise typer.Exit(130) from None
     _tell(place.path, result)
 

@@ -135,7 +135,11 @@ def relight(
         rotation=turned, subsamples=subsamples, background=background,
     )  # fmt: skip
     _write_frames(folder, earlier, frames, count, animation, record.name)
-    output().print(f"{folder}  {count} frames, sheet.png" + _animation_words(animation, count), markup=False)
+    output().print(
+        f"{folder}  {count} frames, sheet.png" + _animation_words(animation, count),
+        markup=False,
+        soft_wrap=True,
+    )
 
 
 def _write_frames(

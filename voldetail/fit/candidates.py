@@ -26,7 +26,7 @@ class Candidate:
 
 CHARACTERS = (
     (False, "none", False), (True, "none", False), (False, "ridge", False), (False, "billow", False),
-    (False, "none", True),
+    (False, "none", True), (True, "none", True),
 )
 """Stripes, fold of H and grains that go together; each is a look of its own, and their products only multiply choices.
 The first two are GD10's."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import importlib.metadata
+import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import UTC, datetime
 
 import numpy as np
@@ -12,8 +13,9 @@ from numpy.typing import NDArray
 
 from voldetail import __version__
 from voldetail.backend import mitsuba
-from voldetail.detail import Detail, NoiseFloor, Provenance, rounded
+from voldetail.detail import Detail, NoiseFloor, Provenance, bounds, rounded
 from voldetail.errors import InputError, VoldetailError
+from voldetail.files import sha256
 from voldetail.fit.objective import Evaluation, Objective
 from voldetail.fit.plans import default_plan, paper_plan
 from voldetail.fit.session import Progress, Session, State, Stopped, derived_seed
@@ -24,7 +26,8 @@ from voldetail.metric import METRICS, describe, distance
 from voldetail.metric.anisotropy import anisotropy
 from voldetail.scene.build import build
 from voldetail.scene.lights_text import light_text
-from voldetail.scene.setup import Setup
+from voldetail.scene.setup import SMALLEST_ZONE, Setup
+from voldetail.scene.view import view_of
 
 SMALLEST_CELL = 3.0
 """Pixels a cell must span: smaller ones cannot be told from pixel noise."""
@@ -76,9 +79,13 @@ def fit(
             session.save()
     except Stopped as reason:
         status = str(reason)
+        session.save()
     except KeyboardInterrupt:
         status, interrupted = "stopped by the user; this is the best so far", True
         session.save()
+    if not session.pool and session.first is not None:
+        # Stopped within the first stage: a resumed fit starts it again, and this is what there is to show.
+        session.pool = [session.first]
     if not session.pool:
         raise VoldetailError("The fit was stopped before a first detail was found: let it run a little longer.")
     final = _finish(session)
@@ -90,13 +97,22 @@ def fit(
 
 
 def space_of(setup: Setup, target: Target) -> Space:
-    """Return the space of details that the zone of ``target`` can show."""
-    rows, columns = target.mask.shape
-    pixel = 2.0 / max(target.shape) * max(target.zone[2:]) / max(rows, columns)
+    """Return the space of details that the zone of ``target`` can show.
+
+    Raises InputError for a zone so small a part of its photo that no detail is fine enough.
+    """
+    view = view_of(setup.camera, target.shape, target.zone, setup.photo.resolution)
+    lowest, highest = bounds("noise.scale")
+    coarsest = max(1.0 / (LARGEST_CELL * max(view.rows, view.columns) * view.pixel), lowest)
+    finest = min(1.0 / (SMALLEST_CELL * view.pixel), highest)
+    if not coarsest < finest:
+        raise InputError(
+            f"The zone of {target.zone[2]} x {target.zone[3]} pixels is too small a part of its photo of"
+            f" {target.shape[1]} x {target.shape[0]}: crop the photo, or use a larger --zone."
+        )
     return Space(
-        domain=setup.domain,
-        scale=(1.0 / (LARGEST_CELL * max(rows, columns) * pixel), 1.0 / (SMALLEST_CELL * pixel)),
-        finest=1.0 / (FINEST_OCTAVE * pixel), amplitude=setup.amplitude,
+        domain=setup.domain, scale=(coarsest, finest), finest=1.0 / (FINEST_OCTAVE * view.pixel),
+        amplitude=setup.amplitude,
     )
 
 
@@ -107,11 +123,13 @@ def _session(
     planner = paper_plan if setup.fit.solver == "paper" else default_plan
     plan = planner(anisotropy(target.luminance, target.mask), setup.fit.evaluations)
     fine = Objective(target, build(setup, target.shape, target.zone), specular=setup.fit.specular)
-    half = setup.model_copy(
-        update={"photo": setup.photo.model_copy(update={"resolution": max(target.mask.shape) // 2})}
-    )
-    coarse_target = target.reduced(setup.fit.metric)
-    coarse = Objective(coarse_target, build(half, target.shape, target.zone), specular=setup.fit.specular)
+    # Half the pixels, or as many more as the metric needs on the shorter side.
+    longest, shortest = max(target.mask.shape), min(target.mask.shape)
+    resolution = min(longest, max(longest // 2, math.ceil(SMALLEST_ZONE * longest / shortest)))
+    half = setup.model_copy(update={"photo": setup.photo.model_copy(update={"resolution": resolution})})
+    surface = build(half, target.shape, target.zone)
+    coarse_target = target.reduced(setup.fit.metric, (surface.view.rows, surface.view.columns))
+    coarse = Objective(coarse_target, surface, specular=setup.fit.specular)
     # The budget that the user named is a limit; the plan's own is an estimate with room for rounding.
     planned = setup.fit.evaluations or plan.evaluations
     session = Session(
@@ -132,13 +150,12 @@ def _finish(session: Session) -> Evaluation:
 def _sign(setup: Setup, target: Target, session: Session, final: Evaluation, status: str) -> Detail:
     """Return the detail with its noise floor and provenance."""
     other = session.fine.evaluate(final.detail, derived_seed(session.root_seed, "floor"))
-    mask = final.mask & other.mask
-    own = describe(final.picture, mask, metric=setup.fit.metric)
-    floor = distance(own, describe(other.picture, mask, like=own))
+    floor = _floor(final, other, setup.fit.metric)
     version = importlib.metadata.version
     provenance = Provenance(
         voldetail=__version__, created=datetime.now(UTC).isoformat(timespec="seconds"), photo=setup.photo.name,
-        photo_sha256=target.photo.sha256, zone=target.zone, resolution=setup.photo.resolution,
+        photo_sha256=target.photo.sha256, mask_sha256=sha256(setup.mask) if setup.mask else None,
+        zone=target.zone, resolution=setup.photo.resolution,
         light=light_text(setup.light), proxy=setup.proxy.kind, solver=setup.fit.solver, metric=setup.fit.metric,
         evaluations=session.evaluations, seconds=round(session.seconds, 2), distance=final.distance,
         mitsuba=version("mitsuba"), drjit=version("drjit"), numpy=version("numpy"),
@@ -154,4 +171,11 @@ def _sign(setup: Setup, target: Target, session: Session, final: Evaluation, sta
     return rounded(Detail.model_validate(named.model_dump()))
 
 
-__all__ = ["FitResult", "Progress", "State", "fit", "replace"]
+def _floor(one: Evaluation, other: Evaluation, metric: str) -> float | None:
+    """Return the distance between two seeds of one detail, or None where they share too little to be compared."""
+    mask = one.mask & other.mask
+    try:
+        own = describe(one.picture, mask, metric=metric)
+        return distance(own, describe(other.picture, mask, like=own))
+    except InputError:
+        return None

@@ -33,7 +33,9 @@ class Evaluation:
 class Objective:
     """Compares details with a Target on one surface; counts its evaluations."""
 
-    def __init__(self, target: Target, surface: HeightField | MeshSurface, *, specular: bool, subsamples: int = 2) -> None:
+    def __init__(
+        self, target: Target, surface: HeightField | MeshSurface, *, specular: bool, subsamples: int = 2
+    ) -> None:
         self.target, self.surface = target, surface
         self.specular, self.subsamples = specular, subsamples
         self.evaluations = 0

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from voldetail.fit.archetypes import ARCHETYPES, ROUGHNESS, SCALES, archetypes
 from voldetail.fit.candidates import Candidate, best_distinct, paper_grid, sampled
 from voldetail.fit.search import GradientDescent
 from voldetail.fit.session import Session, derived_seed
@@ -30,14 +32,14 @@ class Plan:
     evaluations: int
 
 
-COVER = 408
-"""Samples that cover the space, 24 for each of the 17 families of noise."""
+COVER = 288
+"""Samples that cover the space, 16 for each of the 18 families of noise; the archetypes come on top."""
 
-ROUNDS = ((14, 60, False), (7, 70, False), (4, 90, True), (2, 120, True))
+ROUNDS = ((10, 50, False), (5, 70, False), (3, 100, True), (2, 110, True))
 """Successive halving: candidates kept, evaluations for each, at full resolution or half. A family that is only badly
 sampled so far gets its chance, and most of the effort goes where it pays."""
 
-LAST = 160
+LAST = 130
 UNSEEN_SEEDS = 3
 """Numbers of the default plan; tuned on the recovery cases of tests/benchmarks and six photos, for a fit of about a
 minute on two cores."""
@@ -49,14 +51,18 @@ def default_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
     ``evaluations`` scales every stage; None means the tuned numbers.
     """
     ranked = sum(count * UNSEEN_SEEDS for count, _, fine in ROUNDS if fine) + 2 * UNSEEN_SEEDS
-    total = COVER + sum(count * each for count, each, _ in ROUNDS) + LAST + ranked
+    looks = len(ARCHETYPES) * SCALES * len(ROUGHNESS)
+    total = looks + COVER + sum(count * each for count, each, _ in ROUNDS) + LAST + ranked
     factor = 1.0 if evaluations is None else evaluations / total
 
     def scaled(count: int) -> int:
         return max(4, round(count * factor))
 
     def cover(session: Session) -> None:
-        candidates = sampled(session.space, scaled(COVER), derived_seed(session.root_seed, "cover"), anisotropy)
+        candidates = archetypes(session.space, anisotropy)
+        if factor < 1.0:
+            candidates = candidates[:: math.ceil(1.0 / factor)]
+        candidates += sampled(session.space, scaled(COVER), derived_seed(session.root_seed, "cover"), anisotropy)
         session.pool = [
             replace(c, value=session.value(session.coarse, c.kind, c.vector, session.noise_seed(0))) for c in candidates
         ]
@@ -83,7 +89,7 @@ def default_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
         session.pool = [session.pool[0], before]
         _rank(session)
 
-    names = ("trying every family", "searching the better half", "refining the best four", "refining the best two")
+    names = ("trying ten families", "searching the better half", "refining the best three", "refining the best two")
     return Plan(
         (
             Stage("covering the space", cover),

@@ -43,7 +43,9 @@ class Coefficients:
     residual: float
 
 
-def solve(photo: NDArray[np.float32], parts: Components, mask: NDArray[np.bool_], *, specular: bool = True) -> Coefficients:
+def solve(
+    photo: NDArray[np.float32], parts: Components, mask: NDArray[np.bool_], *, specular: bool = True
+) -> Coefficients:
     """Return the coefficients whose picture has the order statistics of ``photo`` (linear luminance, (H, W)).
 
     ``mask`` (H, W) says which pixels count. With ``specular`` False, Ks is 0.
@@ -70,8 +72,8 @@ def solve(photo: NDArray[np.float32], parts: Components, mask: NDArray[np.bool_]
 
 
 def _group_means(values: NDArray[np.floating]) -> NDArray[np.float64]:
-    """Return the means of RANKS equal groups of sorted values (rows, for a matrix)."""
-    edges = np.linspace(0, len(values), RANKS + 1).astype(int)
+    """Return the means of RANKS equal groups of sorted values (rows, for a matrix), or of as many as there are."""
+    edges = np.linspace(0, len(values), min(RANKS, len(values)) + 1).astype(int)
     sums = np.add.reduceat(values.astype(np.float64), edges[:-1], axis=0)
     counts = np.diff(edges).astype(np.float64)
     return np.asarray(sums / (counts if values.ndim == 1 else counts[:, None]))
@@ -95,8 +97,8 @@ def _alternate(
 def bounded_least_squares(matrix: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return x in [0, 1]^k that minimises |matrix x - values|.
 
-    The free solution where it obeys the bounds, else coordinate descent from it, which for a convex problem in a box ends
-    at the optimum. With three unknowns that is a tenth of the time a general solver takes.
+    The free solution where it obeys the bounds, else coordinate descent from it, which for a convex problem in a box
+    ends at the optimum. With three unknowns that is a tenth of the time a general solver takes.
     """
     gram, right = matrix.T @ matrix, matrix.T @ values
     count = len(right)

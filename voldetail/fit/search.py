@@ -37,8 +37,8 @@ class Solver(Protocol):
 
 
 def minimise(
-    solver: Solver, evaluate: Callable[[Sequence[Vector], int], list[float]], start: Vector, *, spread: float, seed: int,
-    budget: int, on_step: Callable[[Solution], bool] = lambda solution: True,
+    solver: Solver, evaluate: Callable[[Sequence[Vector], int], list[float]], start: Vector, *, spread: float,
+    seed: int, budget: int, on_step: Callable[[Solution], bool] = lambda solution: True,
 ) -> Solution:
     """Return the best of at most ``budget`` evaluations from ``start``.
 
@@ -49,16 +49,22 @@ def minimise(
     best, best_value, count, step = start, np.inf, 0, 0
     while True:
         vectors = solver.ask(state)
-        if count + len(vectors) > budget and count > 0:
+        short = count + len(vectors) > budget
+        if short:
+            # A part of a step is of no use to the solver, but where it is the first one, its vectors are all there is.
+            vectors = vectors[: max(budget, 1)] if count == 0 else []
+        if not vectors:
             return Solution(best, best_value, count, "the budget of evaluations was used up")
         values = evaluate(vectors, step)
         count, step = count + len(vectors), step + 1
-        state = solver.tell(state, vectors, values)
         lowest = int(np.argmin(values))
         if values[lowest] < best_value:
             best, best_value = np.array(vectors[lowest]), float(values[lowest])
         if not on_step(Solution(best, best_value, count, "searching")):
             return Solution(best, best_value, count, "the search was asked to stop")
+        if short:
+            return Solution(best, best_value, count, "the budget of evaluations was used up")
+        state = solver.tell(state, vectors, values)
         ended = solver.finished(state)
         if ended:
             return Solution(best, best_value, count, ended)

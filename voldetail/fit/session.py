@@ -18,7 +18,7 @@ from voldetail.fit.space import Kind, Space, Vector
 PREVIEW_SECONDS = 2.0
 
 
-class Stopped(Exception):
+class Stopped(Exception):  # noqa: N818 - an end like any other, not an error
     """The budget of time or evaluations is used up, or the user stopped: the plan ends with what it has."""
 
 
@@ -57,7 +57,10 @@ def derived_seed(root: int, name: str) -> int:
 
 @dataclass
 class Session:
-    """A fit in progress. ``coarse`` and ``fine`` are the objectives at half and full resolution."""
+    """A fit in progress. ``coarse`` and ``fine`` are the objectives at half and full resolution.
+
+    best: the best picture at full resolution; first: the best candidate at any, for a fit that ends within a stage.
+    """
 
     coarse: Objective
     fine: Objective
@@ -71,6 +74,7 @@ class Session:
     start: State | None = None
     stage_name: str = "start"
     best: Evaluation | None = None
+    first: Candidate | None = None
     best_value: float = np.inf
     stage: int = 0
     pool: list[Candidate] = field(default_factory=list)
@@ -82,6 +86,8 @@ class Session:
         self._shown = 0.0
         if self.start:
             self.stage, self.pool, self.trace = self.start.stage, list(self.start.pool), list(self.start.trace)
+            if self.trace:
+                self.best_value = self.trace[-1][1]
 
     @property
     def evaluations(self) -> int:
@@ -107,14 +113,19 @@ class Session:
             raise Stopped("the time limit was reached")
 
     def value(self, objective: Objective, kind: Kind, vector: Vector, seed: int) -> float:
-        """Evaluate one vector; keeps the best picture at full resolution."""
+        """Return the distance at one vector times the handicap of its kind; keeps the best full-resolution picture."""
         self.check()
         evaluation = objective.evaluate(self.space.decode(kind, vector), seed)
-        if objective is self.fine and evaluation.distance < self.best_value:
-            self.best, self.best_value = evaluation, evaluation.distance
-            self.trace.append((self.evaluations, evaluation.distance))
+        value = evaluation.distance * kind.handicap
+        if self.first is None or value < self.first.value:
+            self.first = Candidate(kind, vector, value)
+        if objective is self.fine and (self.best is None or evaluation.distance < self.best.distance):
+            self.best = evaluation
+            if evaluation.distance < self.best_value:
+                self.best_value = evaluation.distance
+                self.trace.append((self.evaluations, evaluation.distance))
         self._report()
-        return evaluation.distance
+        return value
 
     def _report(self) -> None:
         now = time.monotonic()
@@ -160,8 +171,8 @@ class Session:
             return True
 
         found = minimise(
-            chosen, evaluate, candidate.vector, spread=spread, seed=derived_seed(self.root_seed, f"search/{candidate.spent}"),
-            budget=budget, on_step=on_step,
+            chosen, evaluate, candidate.vector, spread=spread, budget=budget, on_step=on_step,
+            seed=derived_seed(self.root_seed, f"search/{candidate.spent}"),
         )
         return replace(
             candidate, vector=found.vector, value=found.value, spread=spread * 0.5,

@@ -185,8 +185,9 @@ def _candidate(record: _CandidateRecord, setup: Setup, where: str) -> Candidate:
         kind = Kind(**record.kind)  # type: ignore[arg-type]
         if kind.fold not in FOLDS:
             raise ValueError(kind.fold)
-        # The bounds do not matter here: a detail that can be made is one that can be searched.
-        Space(setup.domain, (1.0, 2.0), 2.0, setup.amplitude).decode(kind, vector)
+        # A detail that can be made is one that can be searched. The bounds do not matter here, only that no
+        # octave is too fine for the space and so left out before it is checked.
+        Space(setup.domain, (1.0, 2.0), 1e30, setup.amplitude).decode(kind, vector)
     except (ValueError, TypeError, OverflowError):
         raise InputError(
             f"{where} holds a candidate that this setup cannot have; start again without --resume."

@@ -22,6 +22,9 @@ SLOW_SHADING = 0.12
 """Blur, in zone widths, that separates a near light's fall-off from the texture; tuned on the flash photographs of
 ../shared/data, where the main wavelength is a tenth of this."""
 
+BLACK = 1e-6
+"""Mean luminance of a photo below which it has no colour; a hundredth of the darkest 8-bit value but black."""
+
 
 @dataclass(frozen=True)
 class Target:
@@ -44,10 +47,8 @@ class Target:
     photo_halves: float | None
     white: float
 
-    def reduced(self, metric: str) -> Target:
-        """Return the same target at half the resolution, for the coarse pass."""
-        rows, columns = self.mask.shape
-        size = (max(32, rows // 2), max(32, columns // 2))
+    def reduced(self, metric: str, size: tuple[int, int]) -> Target:
+        """Return the same target at fewer pixels (rows, columns), for the coarse pass."""
         pixels = resize(self.pixels, size)
         share = resize(np.repeat(self.mask[..., None].astype(np.float32), 3, axis=2), size)[..., 0]
         light = luminance(pixels)
@@ -96,10 +97,12 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
         raise InputError("The mask leaves nothing of the zone to compare: use a larger mask or another --zone.")
     lamp = lamp_of(setup.light, luminance(photo.pixels))
     if lamp.position is not None and faces_camera(setup):
-        pixels = _with_falloff_of(lamp, pixels, used, view_of(setup.camera, (rows, columns), zone, setup.photo.resolution))
+        view = view_of(setup.camera, (rows, columns), zone, setup.photo.resolution)
+        pixels = _with_falloff_of(lamp, pixels, used, view)
     light = luminance(pixels)
     mean = pixels[used].mean(axis=0).astype(np.float64)
-    tint = mean / max(float(luminance(mean[None, None, :].astype(np.float32))[0, 0]), 1e-6)
+    brightness = float(luminance(mean[None, None, :].astype(np.float32))[0, 0])
+    tint = mean / brightness if brightness > BLACK else np.ones(3)
     descriptor = describe(light, used, metric=setup.fit.metric)
     return Target(
         photo=photo, pixels=pixels, luminance=light, mask=used, shape=(rows, columns), zone=zone,

@@ -37,7 +37,8 @@ def default_zone(luminance: NDArray[np.float32], mask: NDArray[np.bool_], resolu
     longest = min(bottom - top, right - left)
     if longest < SMALLEST_ZONE:
         raise InputError(
-            f"The mask's box is {right - left} x {bottom - top} pixels, too small to fit: at least {SMALLEST_ZONE} each way."
+            f"The mask's box is {right - left} x {bottom - top} pixels, too small to fit: at least {SMALLEST_ZONE} each"
+            " way are needed."
         )
     wanted = resolution * main_wavelength(luminance[top:bottom, left:right]) / FEATURE_PIXELS
     side = int(min(longest, max(wanted, min(resolution, longest))))

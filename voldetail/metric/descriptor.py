@@ -70,8 +70,8 @@ def describe_layers(picture: Layers, like: Descriptor) -> Descriptor:
 def distance(a: Descriptor, b: Descriptor) -> float:
     """How unlike two textures are: 0 for identical pictures, the sum of `distance_by_level`.
 
-    "published" is M of GD10 section 5. "combined" is a weighted mean of squared distances in units of the reference's
-    noise floor: about 1 to 2 for another crop of the same photo. The other metrics sum their parts.
+    "published" is M of GD10 section 5. "combined" is a weighted mean of distances in units of the reference's noise
+    floor: about 1 for another crop of the same photo. The other metrics sum their parts.
     Raises InputError unless both were described alike.
     """
     return sum(distance_by_level(a, b).values())
@@ -88,7 +88,7 @@ def distance_by_level(a: Descriptor, b: Descriptor) -> dict[str, float]:
         return {part: found for (_, part), found in _compared(a, b, a.basis).items()}
     parts = _compared(a, b, a.basis)
     return {
-        f"{name}: {part}": weight * (parts[name, part] / a.floors[name, part]) ** 2
+        f"{name}: {part}": weight * parts[name, part] / a.floors[name, part]
         for name, weights in COMBINED.items()
         for part, weight in weights.items()
     }

@@ -96,7 +96,7 @@ def _rows(pairs: list[tuple[str, str]]) -> str:
 
 def _svg(name: str, draw: Callable[[Axes], None]) -> str:
     """A diagram as inline SVG in the page's own colours."""
-    # Names inside the drawing come from `name`: two diagrams on one page must not share them.
+    # With a salt of their own the names inside the drawing are the same in every run.
     with mpl.rc_context({"svg.hashsalt": name, "svg.fonttype": "path"}):
         figure = new_figure(5.6, 3.3)
         draw(figure.add_axes((0.13, 0.17, 0.84, 0.7)))
@@ -105,9 +105,8 @@ def _svg(name: str, draw: Callable[[Axes], None]) -> str:
     text = buffer.getvalue()
     text = text[text.index("<svg") :]
     text = text.replace(_TEXT, "currentColor").replace(_FAINT, "var(--faint)")
-    # Identifiers that only name groups repeat between diagrams, which a page may not have.
-    return re.sub(r'<g id="(figure|patch|axes|matplotlib|xtick|ytick|line2d|text|legend|PolyCollection'
-                  r'|FillBetweenPolyCollection|LineCollection|StepPatch)_?[^"]*"', "<g", text)  # fmt: skip
+    # Names must be unique on a page, and the diagrams share those of letters and axes.
+    return re.sub(r'( id="|url\(#|href="#)', rf"\g<1>{name}-", text)
 
 
 def _footer(result: FitResult) -> str:

@@ -13,7 +13,7 @@ CLOSE = 2.0
 ALIKE = 4.0
 
 UNEVEN = 3.0
-"""A photo whose halves differ by this many times more than two seeds of a detail is called uneven."""
+"""A photo whose halves differ this many times more than two seeds of a detail is no yardstick: any fit would pass."""
 
 
 @dataclass(frozen=True)
@@ -42,11 +42,13 @@ def verdict(distance: float, floor: NoiseFloor) -> Verdict:
         if value is not None and value > 0
         for text in [text.format(number(value))]
     ]
-    yardstick = floor.photo_halves or floor.other_seed
+    uneven = bool(floor.photo_halves and floor.other_seed and floor.photo_halves > UNEVEN * floor.other_seed)
+    by_halves = bool(floor.photo_halves) and not uneven
+    yardstick = floor.photo_halves if by_halves else floor.other_seed
     if not yardstick:
         return Verdict("not judged", f"M = {number(distance)}; there is nothing to hold it against.", None)
     ratio = distance / yardstick
-    against = "the photo's halves" if floor.photo_halves else "two seeds of the detail"
+    against = "the photo's halves" if by_halves else "two seeds of the detail"
     word = _word(ratio)
     meaning = {
         "as alike": f"as near to the photo as {against} are to each other",
@@ -56,8 +58,7 @@ def verdict(distance: float, floor: NoiseFloor) -> Verdict:
         "no match": f"not a match, {ratio:.3g} times as far as {against} from each other;"
         " check the light, the zone and the proxy, or let it search longer",
     }[word]
-    uneven = bool(floor.photo_halves and floor.other_seed and floor.photo_halves > UNEVEN * floor.other_seed)
-    caution = " The photo itself is uneven, so this says less than usual." if uneven else ""
+    caution = " The photo's halves are too unlike to judge by: it is uneven, or small." if uneven else ""
     return Verdict(word, f"M = {number(distance)} ({', '.join(parts)}): {meaning}.{caution}", ratio)
 
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Protocol
+
+import numpy as np
 
 from voldetail.detail import Detail
 from voldetail.scene.heightfield import HeightField
-from voldetail.scene.proxy import make_proxy
+from voldetail.scene.proxy import Proxy, make_proxy
 from voldetail.scene.setup import ProxySetup, Setup
 from voldetail.scene.surface import MeshSurface
 from voldetail.scene.view import View, Zone, view_of
@@ -25,7 +28,9 @@ class Surface(Protocol):
     def lit(self, points: object, normals: object, direction: object, distance: object) -> object: ...
 
 
-def build(setup: Setup, photo_shape: tuple[int, int], zone: Zone | None, *, fast: bool = True) -> HeightField | MeshSurface:
+def build(
+    setup: Setup, photo_shape: tuple[int, int], zone: Zone | None, *, fast: bool = True
+) -> HeightField | MeshSurface:
     """Return the surface of ``setup`` seen through ``zone`` of a photo of ``photo_shape`` (rows, columns).
 
     A plane that faces an orthographic camera becomes a HeightField when ``fast``; all else a MeshSurface in Mitsuba.
@@ -33,8 +38,8 @@ def build(setup: Setup, photo_shape: tuple[int, int], zone: Zone | None, *, fast
     view = view_of(setup.camera, photo_shape, zone, setup.photo.resolution)
     if faces_camera(setup):
         if fast:
-            return HeightField(view, setup.proxy.position[2])
-        return MeshSurface(make_proxy(_covering(view, setup), view.pixel, setup.domain), view, one_sided_sky=True)
+            return HeightField(view, setup.proxy.position)
+        return MeshSurface(_covering(view, setup), view, one_sided_sky=True)
     return MeshSurface(
         make_proxy(setup.proxy, view.pixel, setup.domain), view, one_sided_sky=setup.proxy.kind == "plane"
     )
@@ -49,11 +54,12 @@ def faces_camera(setup: Setup) -> bool:
     )
 
 
-def _covering(view: View, setup: Setup) -> ProxySetup:
-    """Return a plane that covers the view and its margin, at the proxy's depth."""
+def _covering(view: View, setup: Setup) -> Proxy:
+    """Return a plane that covers the view and its margin, at the proxy's depth; its noise stays the proxy's own."""
     margin = FLAT_MARGIN * view.pixel
-    return ProxySetup(
-        kind="plane",
-        size=(view.right - view.left + 2 * margin, view.top - view.bottom + 2 * margin, 0.0),
-        position=((view.left + view.right) / 2, (view.top + view.bottom) / 2, setup.proxy.position[2]),
-    )
+    x, y, z = setup.proxy.position
+    middle = ((view.left + view.right) / 2, (view.top + view.bottom) / 2, z)
+    size = (view.right - view.left + 2 * margin, view.top - view.bottom + 2 * margin, 0.0)
+    plane = make_proxy(ProxySetup(kind="plane", size=size, position=middle), view.pixel, setup.domain)
+    shift = np.array([middle[0] - x, middle[1] - y, 0.0], dtype=np.float32)
+    return replace(plane, domain=plane.domain + shift)

@@ -1,4 +1,4 @@
-"""Environment maps: checked, read by Mitsuba, turned so that y is up and the picture's middle is seen from the front."""
+"""Environment maps: checked, read by Mitsuba; y is up, and the picture's middle lights the side facing the viewer."""
 
 from __future__ import annotations
 
@@ -33,5 +33,7 @@ def environment_emitter(path: Path) -> Any:
         raise InputError(f"The environment map {path.name} cannot be read: it is damaged or not an image.") from error
     values = np.asarray(bitmap)
     if not np.isfinite(values).all() or values.min() < 0:
-        raise InputError(f"The environment map {path.name} holds values that are negative or not finite: mend it first.")
+        raise InputError(
+            f"The environment map {path.name} holds values that are negative or not finite: mend it first."
+        )
     return mi.load_dict({"type": "envmap", "bitmap": bitmap})

@@ -31,12 +31,12 @@ AZIMUTHS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)
 class HeightField:
     """Relief over the window of a View; `update` sets the relief, the rest looks at it."""
 
-    def __init__(self, view: View, height: float = 0.0) -> None:
+    def __init__(self, view: View, position: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
         mi = mitsuba()
         self.view = view
         self.columns, self.rows = view.columns + 2 * MARGIN, view.rows + 2 * MARGIN
         self.step = view.pixel
-        self.base = height
+        self.base = position[2]
         # Vertices sit at pixel corners; row 0 on top.
         x = view.left + (np.arange(self.columns) - MARGIN) * self.step
         y = view.top - (np.arange(self.rows) - MARGIN) * self.step
@@ -45,6 +45,8 @@ class HeightField:
         self.towards_viewer: Any = mi.Vector3f(0.0, 0.0, 1.0)
         self.x = mi.Float(gx.astype(np.float32).ravel())
         self.y = mi.Float(gy.astype(np.float32).ravel())
+        # The noise belongs to the plane and moves with it.
+        self.domain = (self.x - position[0], self.y - position[1], dr.zeros(mi.Float, len(self.x)))
         self.z = dr.zeros(mi.Float, len(self.x))
         self.albedo: Any = None
         self._column, self._row = self._indices()
@@ -60,11 +62,10 @@ class HeightField:
 
     def update(self, detail: Detail) -> None:
         """Compute heights A_d R and vertex normals, and the sky's visibility at the vertices."""
-        domain = (self.x, self.y, dr.full(self.float_type, self.base, len(self.x)))
-        relief = relief_at(detail, domain)
+        relief = relief_at(detail, self.domain)
         amplitude = dr.opaque(self.float_type, detail.relief.amplitude)
         self.z = relief * amplitude
-        self.albedo = albedo_at(detail, domain, relief)
+        self.albedo = albedo_at(detail, self.domain, relief)
         dr.eval(self.z, self.albedo)
         # The highest point ends every walk towards the light.
         self.top = dr.max(self.z)
@@ -99,8 +100,8 @@ class HeightField:
             horizon = dr.atan(slope)
             along = (self.normal[0] * ax + self.normal[1] * ay) * (1.0 / length)
             sine_double = 2.0 * slope * cosine_squared
-            lobe = along * (0.5 * (0.5 * math.pi - horizon) - 0.25 * sine_double) + 0.5 * self.normal[2] * cosine_squared
-            total = total + dr.maximum(lobe, 0.0)
+            lobe = along * (0.5 * (0.5 * math.pi - horizon) - 0.25 * sine_double)
+            total = total + dr.maximum(lobe + 0.5 * self.normal[2] * cosine_squared, 0.0)
         return total * (2.0 / len(AZIMUTHS))
 
     def look(self, subsamples: int) -> tuple[Any, Any, Any, Any, Any]:
@@ -111,7 +112,8 @@ class HeightField:
         z, nx, ny, nz, sky, *albedo = self._interpolate(gx, gy, fields)
         x = self.view.left + (gx - MARGIN) * self.step
         y = self.view.top - (gy - MARGIN) * self.step
-        return mi.Point3f(x, y, z + self.base), dr.normalize(mi.Vector3f(nx, ny, nz)), sky, mi.Bool(True), albedo[0] if albedo else 1.0
+        points, normals = mi.Point3f(x, y, z + self.base), dr.normalize(mi.Vector3f(nx, ny, nz))
+        return points, normals, sky, mi.Bool(True), albedo[0] if albedo else 1.0
 
     def _grid(self, subsamples: int) -> tuple[Any, Any]:
         mi = mitsuba()
@@ -147,11 +149,13 @@ class HeightField:
         gy = (self.view.top - points.y) * (1.0 / self.step) + MARGIN
         dx, dy = direction.x / horizontal, -direction.y / horizontal
         rise = direction.z / horizontal * self.step
+        # What stands behind a near light casts no shadow.
+        furthest = distance * horizontal * (1.0 / self.step)
         last_x, last_y = self.columns - 1.001, self.rows - 1.001
 
         def inside(t: Any, z: Any, lit: Any) -> Any:
             x, y = gx + t * dx, gy + t * dy
-            return lit & (z < self.top) & (x >= 0) & (y >= 0) & (x < last_x) & (y < last_y)
+            return lit & (t < furthest) & (z < self.top) & (x >= 0) & (y >= 0) & (x < last_x) & (y < last_y)
 
         def step(t: Any, z: Any, lit: Any) -> tuple[Any, Any, Any]:
             (height,) = self._interpolate(gx + t * dx, gy + t * dy, (self.z,))

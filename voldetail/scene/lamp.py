@@ -66,7 +66,7 @@ class Lamp:
 
 
 def lamp_of(light: Light, luminance: NDArray[np.float32] | None = None) -> Lamp:
-    """Return the Lamp for a Light of a Setup; a flash without a foot is put over the brightest part of ``luminance``."""
+    """Return the Lamp for a Light of a Setup; a flash without a foot is over the brightest part of ``luminance``."""
     if light.kind == "directional":
         return Lamp(direction=light.direction, strength=light.strength)
     if light.kind == "point":

@@ -56,7 +56,9 @@ def make_proxy(setup: ProxySetup, edge: float, domain: str = "solid", limit: int
     )
 
 
-def _shape(kind: str, extent: tuple[float, float, float]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+def _shape(
+    kind: str, extent: tuple[float, float, float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
     if kind == "plane":
         w, h = extent[0] / 2, extent[1] / 2
         positions = np.array([[-w, -h, 0.0], [w, -h, 0.0], [w, h, 0.0], [-w, h, 0.0]])
@@ -78,7 +80,7 @@ def _shape(kind: str, extent: tuple[float, float, float]) -> tuple[NDArray[np.fl
 def _reproject(
     kind: str, extent: tuple[float, float, float], positions: NDArray[np.float64], normals: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Put the midpoints of curved shapes back on the shape and make normals unit vectors again."""
+    """Put the midpoints of curved shapes back on the shape, and give all their exact unit normals."""
     half = np.asarray(extent) / 2
     if kind in ("sphere", "ellipsoid"):
         unit = positions / half
@@ -94,6 +96,11 @@ def _reproject(
         positions[np.ix_(side, [0, 2])] = radial[side] / radius[side, None] * half[[0, 2]]
         normals[side] = 0.0
         normals[np.ix_(side, [0, 2])] = radial[side] / radius[side, None] / half[[0, 2]]
+        cap = ~side & (radius < math.cos(math.pi / 96) * 0.999)
+        normals[cap] = np.sign(positions[cap]) * (0.0, 1.0, 0.0)
+    elif kind == "box":
+        # A midpoint's mean would lean to the corners all over the sides; the mean of the sides belongs to the edges.
+        normals = np.sign(positions) * (np.abs(positions) >= half * (1 - 1e-9))
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     return positions, normals / np.where(length > 0, length, 1.0)
 

@@ -39,7 +39,8 @@ class MeshSurface:
         properties = mi.Properties()
         if bsdf is not None:
             properties["bsdf"] = mi.load_dict(bsdf)
-        mesh = mi.Mesh(SHAPE, len(proxy.positions), len(proxy.faces), has_vertex_normals=False, props=properties)
+        # With vertex normals, though none are given: else Mitsuba makes none anew and every face is shaded flat.
+        mesh = mi.Mesh(SHAPE, len(proxy.positions), len(proxy.faces), has_vertex_normals=True, props=properties)
         parameters = mi.traverse(mesh)
         parameters["vertex_positions"] = mi.Float(proxy.positions.ravel())
         parameters["faces"] = mi.UInt32(proxy.faces.ravel())
@@ -49,7 +50,7 @@ class MeshSurface:
         self._faces = tuple(mi.UInt32(np.ascontiguousarray(proxy.faces[:, corner])) for corner in range(3))
         self.albedo: Any = None
         self.towards_viewer: Any = mi.Vector3f(0.0, 0.0, 1.0)
-        self._key = next(k for k in self._parameters.keys() if k.endswith("vertex_positions"))
+        self._key = next(key for key, _ in self._parameters if key.endswith("vertex_positions"))
 
     def update(self, detail: Detail) -> None:
         """Displace the mesh by the relief of ``detail``."""

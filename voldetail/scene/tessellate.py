@@ -12,7 +12,7 @@ MAXIMUM_FACES = 1_500_000
 def split_long_edges(
     attributes: NDArray[np.float64], faces: NDArray[np.int64], longest: float, limit: int = MAXIMUM_FACES
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return (attributes (V', K), faces (F', 3)) with every edge at most ``longest``, unless ``limit`` faces is reached.
+    """Return (attributes (V', K), faces (F', 3)), every edge at most ``longest`` unless ``limit`` faces is reached.
 
     The first three columns of ``attributes`` (V, K) are the position; midpoints get the mean of all columns. An edge is
     split for both of its faces at once, so neighbours stay joined and a displacement opens no cracks.

@@ -1,0 +1,63 @@
+"""Looks that nature repeats, as starting points: cheap to try, and rarely met by samples that only cover the space."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+
+from voldetail.fit.candidates import Candidate
+from voldetail.fit.space import Kind, Space
+
+RISING = {"shape.0": 1.2}
+"""Steep low and flat high: broad tops between narrow gaps."""
+
+FALLING = {"shape.0": -1.2}
+"""Flat low and steep high: lone bumps on flat ground."""
+
+STEEP = {"shape.1": -1.0}
+"""Steep in the middle: two levels."""
+
+ARCHETYPES: tuple[tuple[str, Kind, dict[str, float]], ...] = (
+    ("pebbles", Kind(1, 2, "gaussian", 1, False, grains=True, pigment=True),
+     RISING | {"reflectance.cell_albedo": 0.25, "reflectance.height_albedo": 0.3}),
+    ("gravel", Kind(1, 2, "exponential", 2, True, grains=True, pigment=True),
+     RISING | {"noise.stripe_frequency": 0.3, "noise.stripe_spread": math.pi, "noise.lacunarity": 3.0,
+               "reflectance.cell_albedo": 0.25, "reflectance.height_albedo": 0.3}),
+    ("bare grains", Kind(1, 2, "gaussian", 2, False, grains=True), RISING | {"noise.lacunarity": 2.5}),
+    ("roughcast", Kind(1, 50, "gaussian", 2, False), FALLING | {"noise.lacunarity": 2.2}),
+    ("plaster", Kind(1, 50, "gaussian", 3, False), {"noise.lacunarity": 2.0}),
+    ("pits", Kind(1, 50, "gaussian", 2, False), RISING | {"noise.lacunarity": 2.5}),
+    ("bumps", Kind(1, 2, "exponential", 2, False), FALLING | {"noise.lacunarity": 2.0}),
+    ("crust", Kind(2, 2, "exponential", 3, False), STEEP | {"noise.lacunarity": 2.0}),
+    ("bark", Kind(2, 3, "gaussian", 3, False, pigment=True),
+     STEEP | {"noise.lacunarity": 2.5, "reflectance.height_albedo": 0.3}),
+    ("ripples", Kind(1, 50, "gaussian", 1, True), {"noise.stripe_frequency": 1.0, "noise.stripe_spread": 0.4}),
+    ("fibres", Kind(1, 50, "gaussian", 2, True),
+     {"noise.stripe_frequency": 1.0, "noise.stripe_spread": math.pi, "noise.lacunarity": 2.0}),
+    ("creases", Kind(1, 50, "gaussian", 3, False, fold="ridge"), {"noise.lacunarity": 2.0}),
+)
+"""Name, kind and numbers of each look; scale, roughness and stretch are varied over them."""
+
+SCALES = 5
+ROUGHNESS = (0.25, 0.6)
+
+
+def archetypes(space: Space, anisotropy: tuple[float, float]) -> list[Candidate]:
+    """Return every look at several scales and two roughnesses, stretched as the photo's spectrum is.
+
+    Scales run evenly, on a logarithmic scale, over the middle of what the picture can show.
+    """
+    low, high = np.log(space.scale[0]), np.log(space.scale[1])
+    factor, angle = anisotropy
+    out = []
+    for (_, kind, numbers), step, rough in itertools.product(ARCHETYPES, range(SCALES), ROUGHNESS):
+        scale = float(np.exp(low + (high - low) * (0.3 + 0.6 * step / (SCALES - 1))))
+        # The light alone makes relief look stretched; half of the spectrum's stretch is taken for the relief's own.
+        values = {
+            "noise.scale": scale, "roughness": rough, "noise.anisotropy": factor**-0.5, "noise.angle": angle,
+            "shape.0": 0.0, "shape.1": 0.0, "shape.2": 0.0,
+        } | numbers
+        out.append(Candidate(kind, space.encode(kind, values)))
+    return out
