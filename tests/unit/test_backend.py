@@ -64,7 +64,7 @@ def test_the_users_own_is_refused_when_too_old(
 ) -> None:
     machine |= {"/a/libLLVM.so.23": 23, "/own/libLLVM.so": version}
     monkeypatch.setenv("DRJIT_LIBLLVM_PATH", "/own/libLLVM.so")
-    with pytest.raises(BackendError, match=f"/own/libLLVM.so is LLVM {version}, .* give 19 or newer,? or unset it"):
+    with pytest.raises(BackendError, match=f"is LLVM {version}, which can abort Mitsuba: give 19 or newer, or unset"):
         find_llvm()
 
 
@@ -73,7 +73,7 @@ def test_the_users_own_is_refused_when_it_is_no_library(
 ) -> None:
     machine["/a/libLLVM.so.23"] = 23
     monkeypatch.setenv("DRJIT_LIBLLVM_PATH", "/own/nothing.so")
-    with pytest.raises(BackendError, match="/own/nothing.so cannot be loaded"):
+    with pytest.raises(BackendError, match=r"nothing[.]so cannot be loaded"):
         find_llvm()
 
 

@@ -37,7 +37,7 @@ def render(
     detail: Detail, mesh: str | Path = "sphere", *, light: Light | None = None, envmap: Path | None = None,
     scale: float = 1.0, size: tuple[int, int] = (640, 480), camera: CameraSetup | None = None,
     rotation: tuple[float, float, float] = (0.0, 0.0, 0.0), subsamples: int = 2, samples: int = 64,
-    shading: Shading = "phong", background: float = 0.0,
+    shading: Shading = "phong", background: float = 0.0, edge: float = PIXELS_AN_EDGE,
 ) -> Picture:
     """Return a linear picture (rows, columns, 3) of ``detail`` on ``mesh``: a kind of proxy or a mesh file.
 
@@ -45,7 +45,7 @@ def render(
     ``subsamples`` squared samples a pixel, the detail's ambient term being a uniform sky. Under an ``envmap``
     (equirectangular .exr or .hdr) it is path-traced with ``samples`` a pixel. ``scale`` makes the relief larger, cells
     and height alike; ``size`` is columns, rows; ``rotation`` turns the mesh about x, y, z in degrees; ``background`` is
-    the radiance where there is no surface. Raises InputError for a mesh or environment that cannot be used.
+    the radiance where there is no surface; ``edge`` the length of the mesh's edges in pixels. Raises InputError for a mesh or environment that cannot be used.
     """
     if envmap is not None and light is not None:
         raise InputError("A light and an environment map were both given: choose one.")
@@ -59,7 +59,7 @@ def render(
         r = detail.reflectance
         emitters = emitters_of(lamp_of(light), r.ambient / r.diffuse if r.diffuse > 1e-6 else 0.0)
     surface = MeshSurface(
-        _proxy(detail, mesh, view, rotation), view, scale=scale, bsdf=_bsdf(detail, shading), emitters=emitters,
+        _proxy(detail, mesh, view, rotation, edge), view, scale=scale, bsdf=_bsdf(detail, shading), emitters=emitters,
         one_sided_sky=str(mesh) == "plane",
     )
     surface.update(detail)
@@ -102,7 +102,9 @@ def _view(mesh: str | Path, size: tuple[int, int], camera: CameraSetup | None) -
     return whole_view(columns, rows, camera, FLAT_MARGIN if str(mesh) == "plane" else 1.15)
 
 
-def _proxy(detail: Detail, mesh: str | Path, view: View, rotation: tuple[float, float, float]) -> Proxy:
+def _proxy(
+    detail: Detail, mesh: str | Path, view: View, rotation: tuple[float, float, float], edge: float = PIXELS_AN_EDGE
+) -> Proxy:
     kind = str(mesh)
     if kind == "plane" and rotation == (0.0, 0.0, 0.0):
         # Fills the picture and a little more, so that no edge is seen.
@@ -112,7 +114,7 @@ def _proxy(detail: Detail, mesh: str | Path, view: View, rotation: tuple[float, 
         setup = ProxySetup(kind=kind, rotation=rotation)  # type: ignore[arg-type]
     else:
         setup = ProxySetup(kind="mesh", mesh=Path(mesh), rotation=rotation)
-    return make_proxy(setup, PIXELS_AN_EDGE * view.pixel, detail.noise.domain)
+    return make_proxy(setup, edge * view.pixel, detail.noise.domain)
 
 
 def _lit(detail: Detail, surface: MeshSurface, lamp: Lamp, subsamples: int, background: float) -> Picture:

@@ -17,7 +17,7 @@ from voldetail.detail import Detail, NoiseFloor, Provenance, bounds, rounded
 from voldetail.errors import InputError, VoldetailError
 from voldetail.files import sha256
 from voldetail.fit.objective import Evaluation, Objective
-from voldetail.fit.plans import default_plan, paper_plan
+from voldetail.fit.plans import Stage, default_plan, paper_plan
 from voldetail.fit.session import Progress, Session, State, Stopped, derived_seed
 from voldetail.fit.space import Space
 from voldetail.fit.target import Target, make_target
@@ -37,6 +37,11 @@ LARGEST_CELL = 0.6
 
 FINEST_OCTAVE = 1.6
 """Pixels a cell of the finest octave must span, near the sampling limit of the mesh's one vertex a pixel."""
+
+
+FINALISTS = 3
+DETAIL_SEEDS = 4
+"""Seeds tried for the finished detail: one noise field of a few hundred cells can by chance be an odd one."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +124,7 @@ def space_of(setup: Setup, target: Target) -> Space:
 def _session(
     setup: Setup, target: Target, start: State | None,
     on_progress: Callable[[Progress], None], on_state: Callable[[State], None],
-) -> tuple[Session, tuple]:
+) -> tuple[Session, tuple[Stage, ...]]:
     planner = paper_plan if setup.fit.solver == "paper" else default_plan
     plan = planner(anisotropy(target.luminance, target.mask), setup.fit.evaluations)
     fine = Objective(target, build(setup, target.shape, target.zone), specular=setup.fit.specular)
@@ -134,17 +139,24 @@ def _session(
     planned = setup.fit.evaluations or plan.evaluations
     session = Session(
         coarse, fine, space_of(setup, target), setup.seed, planned, setup.fit.seeds, setup.fit.time_limit,
-        on_progress, on_state, start,
+        on_progress, on_state, start, stages=len(plan.stages),
     )
     return session, plan.stages
 
 
 def _finish(session: Session) -> Evaluation:
-    """Return the evaluation of the winner under the detail's own seed, at full resolution."""
+    """Return the evaluation of the winner at full resolution, under the best of a few seeds for the detail itself.
+
+    A plan that was cut short leaves candidates compared at half resolution; the best few are compared once more.
+    """
     finite = [c for c in session.pool if np.isfinite(c.value)] or session.pool
-    best = min(finite, key=lambda c: c.value)
-    detail = rounded(session.space.decode(best.kind, best.vector))
-    return session.fine.evaluate(detail, derived_seed(session.root_seed, "detail"))
+    details = [
+        rounded(session.space.decode(c.kind, c.vector)) for c in sorted(finite, key=lambda c: c.value)[:FINALISTS]
+    ]
+    if session.stage < session.stages:
+        details.sort(key=lambda d: session.fine.evaluate(d, session.unseen_seed(0)).distance)
+    seeds = (derived_seed(session.root_seed, f"detail/{index}") for index in range(DETAIL_SEEDS))
+    return min((session.fine.evaluate(details[0], seed) for seed in seeds), key=lambda e: e.distance)
 
 
 def _sign(setup: Setup, target: Target, session: Session, final: Evaluation, status: str) -> Detail:

@@ -63,9 +63,9 @@ def default_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
         if factor < 1.0:
             candidates = candidates[:: math.ceil(1.0 / factor)]
         candidates += sampled(session.space, scaled(COVER), derived_seed(session.root_seed, "cover"), anisotropy)
-        session.pool = [
-            replace(c, value=session.value(session.coarse, c.kind, c.vector, session.noise_seed(0))) for c in candidates
-        ]
+        session.pool = []
+        for c in candidates:
+            session.pool.append(replace(c, value=session.value(session.coarse, c.kind, c.vector, session.noise_seed(0))))
         session.pool = best_distinct(session.pool, ROUNDS[0][0])
 
     def halving(index: int) -> Callable[[Session], None]:
@@ -119,13 +119,11 @@ def paper_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
         grid = paper_grid(session.space, anisotropy)
         count = min(len(grid), max(PAPER_KEPT, int(total * PAPER_SHARE)))
         chosen = np.random.default_rng(derived_seed(session.root_seed, "grid")).permutation(len(grid))[:count]
-        session.pool = sorted(
-            (
-                replace(grid[i], value=session.value(session.coarse, grid[i].kind, grid[i].vector, session.noise_seed(0)))
-                for i in chosen
-            ),
-            key=lambda c: c.value,
-        )[:PAPER_KEPT]
+        session.pool = []
+        for i in chosen:
+            c = grid[i]
+            session.pool.append(replace(c, value=session.value(session.coarse, c.kind, c.vector, session.noise_seed(0))))
+        session.pool = sorted(session.pool, key=lambda c: c.value)[:PAPER_KEPT]
 
     def descend(session: Session) -> None:
         share = max(1, (session.planned - session.evaluations) // max(len(session.pool), 1))

@@ -77,6 +77,7 @@ class Session:
     first: Candidate | None = None
     best_value: float = np.inf
     stage: int = 0
+    stages: int = 0
     pool: list[Candidate] = field(default_factory=list)
     trace: list[tuple[int, float]] = field(default_factory=list)
 

@@ -71,7 +71,10 @@ def draw_convergence(axes: Axes, ink: Ink, result: FitResult) -> None:
     trace = [*result.trace, (max(result.evaluations, 1), result.distance)]
     count, best = np.array(trace, dtype=float).T
     best = np.where(best > 0, best, np.nan)
-    axes.step(count[:-1], best[:-1], where="post", color=FIT_COLOUR, linewidth=1.8, label="best M so far")
+    lasting = np.append(best[:-1], best[-2:-1])  # the last improvement holds to the end
+    axes.step(
+        count[: len(lasting)], lasting, where="post", color=FIT_COLOUR, linewidth=1.8, label="best M so far"
+    )
     axes.plot(
         count[-1], best[-1], "o", color=FIT_COLOUR, markersize=6, label="M of the detail, with its own seed"
     )

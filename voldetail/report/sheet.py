@@ -90,7 +90,7 @@ def write_sheet(path: Path, result: FitResult, gallery: Gallery) -> None:
 def _header(page: _Page, result: FitResult) -> None:
     name = textwrap.shorten(result.detail.name, 70, placeholder="...")
     page.text(MARGIN, 0.4, name, 21, weight="bold")
-    page.text(MARGIN, 0.9, summary(result.detail), 10.5, color=QUIET)
+    page.text(MARGIN, 0.9, textwrap.shorten(summary(result.detail), 175, placeholder="..."), 9.5, color=QUIET)
     sentence = verdict(result.distance, result.detail.noise_floor).sentence
     lines = textwrap.wrap(sentence + " M compares texture statistics and is 0 for the same picture.", 150)
     page.text(MARGIN, 1.17, "\n".join(lines[:3]), 10.5, linespacing=1.4)

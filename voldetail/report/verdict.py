@@ -13,7 +13,7 @@ CLOSE = 2.0
 ALIKE = 4.0
 
 UNEVEN = 3.0
-"""A photo whose halves differ this many times more than two seeds of a detail is no yardstick: any fit would pass."""
+"""A photo whose halves differ this many times more than two seeds is no yardstick: any fit would pass."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from voldetail.scene.proxy import Proxy
 from voldetail.scene.relief import albedo_at, relief_at
 from voldetail.scene.view import View
 
-SKY_RAYS = 64
+SKY_RAYS = 32
 """Directions in which the sky is looked for, the same for every point: smooth shading without grain."""
 
 GOLDEN_ANGLE = math.pi * (3.0 - math.sqrt(5.0))
@@ -36,21 +36,11 @@ class MeshSurface:
         self._positions = mi.Point3f(np.ascontiguousarray(proxy.positions.T))
         self._normals = mi.Vector3f(np.ascontiguousarray(proxy.normals.T))
         self._domain = tuple(mi.Float(np.ascontiguousarray(proxy.domain[:, axis])) for axis in range(3))
-        properties = mi.Properties()
-        if bsdf is not None:
-            properties["bsdf"] = mi.load_dict(bsdf)
-        # With vertex normals, though none are given: else Mitsuba makes none anew and every face is shaded flat.
-        mesh = mi.Mesh(SHAPE, len(proxy.positions), len(proxy.faces), has_vertex_normals=True, props=properties)
-        parameters = mi.traverse(mesh)
-        parameters["vertex_positions"] = mi.Float(proxy.positions.ravel())
-        parameters["faces"] = mi.UInt32(proxy.faces.ravel())
-        parameters.update()
-        self.scene = mi.load_dict({"type": "scene", SHAPE: mesh, **(emitters or {})})
-        self._parameters = mi.traverse(self.scene)
+        self._bsdf, self._emitters = bsdf, emitters or {}
+        self._parameters: Any = None
         self._faces = tuple(mi.UInt32(np.ascontiguousarray(proxy.faces[:, corner])) for corner in range(3))
         self.albedo: Any = None
         self.towards_viewer: Any = mi.Vector3f(0.0, 0.0, 1.0)
-        self._key = next(key for key, _ in self._parameters if key.endswith("vertex_positions"))
 
     def update(self, detail: Detail) -> None:
         """Displace the mesh by the relief of ``detail``."""
@@ -61,8 +51,30 @@ class MeshSurface:
         positions = dr.ravel(self._positions + height * self._normals)
         # Left unevaluated, the noise would be computed again by each consumer of the vertices.
         dr.eval(positions, self.albedo)
-        self._parameters[self._key] = positions
-        self._parameters.update()
+        if self._parameters is None:
+            # Loaded with the first relief: a hierarchy over the bare proxy would be built for nothing.
+            self._load(positions)
+        else:
+            self._parameters[self._key] = positions
+            self._parameters.update()
+
+    def _load(self, positions: Any) -> None:
+        mi = mitsuba()
+        properties = mi.Properties()
+        if self._bsdf is not None:
+            properties["bsdf"] = mi.load_dict(self._bsdf)
+        # With vertex normals, though none are given: else Mitsuba makes none anew and every face is shaded flat.
+        count = len(self.proxy.positions), len(self.proxy.faces)
+        mesh = mi.Mesh(SHAPE, *count, has_vertex_normals=True, props=properties)
+        parameters = mi.traverse(mesh)
+        parameters["vertex_positions"] = positions
+        parameters["faces"] = mi.UInt32(self.proxy.faces.ravel())
+        parameters.update()
+        self.scene = mi.load_dict(
+            {"type": "scene", "embree_use_robust_intersections": True, SHAPE: mesh, **self._emitters}
+        )
+        self._parameters = mi.traverse(self.scene)
+        self._key = next(key for key, _ in self._parameters if key.endswith("vertex_positions"))
 
     def rays(self, subsamples: int) -> Any:
         """Return the camera rays of a regular grid of samples, row by row."""
