@@ -74,7 +74,7 @@ class Space:
     scale: tuple[float, float]
     finest: float
     amplitude: float | None = None
-    roughness: tuple[float, float] = (0.05, 1.6)
+    roughness: tuple[float, float] = (0.05, 0.7)
     anisotropy: tuple[float, float] = (0.2, 5.0)
     stripes: tuple[float, float] = (0.2, 4.0)
 

@@ -1,0 +1,135 @@
+"""The space that is searched: every vector is a detail within bounds, and back."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from voldetail.detail import PAPER_NEIGHBOURS, START_CURVES, bounds, load_detail, rounded, save_detail
+from voldetail.detail.record import Detail
+from voldetail.fit.space import FOLDS, SHAPE_COUNT, SHAPE_RANGE, Kind, Space, fold, profile, shape_of
+
+SPACE = Space("solid", (1.0, 60.0), 120.0)
+KINDS = st.builds(
+    lambda ranks, *rest: Kind(*ranks, *rest), st.sampled_from(PAPER_NEIGHBOURS),
+    st.sampled_from(["exponential", "gaussian"]), st.integers(1, 4), st.booleans(), st.sampled_from(FOLDS),
+    st.booleans(), st.booleans(),
+)  # fmt: skip
+UNIT = st.floats(-0.5, 1.5)
+
+
+def vectors(kind: Kind, space: Space = SPACE) -> st.SearchStrategy[np.ndarray]:
+    return st.lists(UNIT, min_size=len(space.names(kind)), max_size=len(space.names(kind))).map(np.array)
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(st.data(), KINDS, st.sampled_from([None, 0.03]), st.sampled_from(["solid", "surface"]))
+def test_every_vector_is_a_valid_detail_of_its_kind(
+    data: st.DataObject, kind: Kind, amplitude: float | None, domain: str
+) -> None:
+    space = Space(domain, (1.0, 60.0), 120.0, amplitude)
+    detail = space.decode(kind, data.draw(vectors(kind, space)))
+    assert rounded(Detail.model_validate(detail.model_dump())).noise.domain == domain
+    noise = detail.noise
+    assert (noise.first_neighbour, noise.last_neighbour, noise.envelope) == (kind.first, kind.last, kind.envelope)
+    assert 1.0 <= noise.scale <= 60.0 * (1 + 1e-12)
+    assert noise.octaves <= kind.octaves
+    # The finest octave that is kept can still be seen.
+    assert noise.octaves == 1 or noise.scale * noise.lacunarity ** (noise.octaves - 1) <= 120.0 * (1 + 1e-9)
+    if amplitude is not None:
+        assert detail.relief.amplitude == amplitude
+    else:
+        low, high = space.roughness
+        assert low * 0.999 <= detail.relief.amplitude * noise.scale <= high * 1.001
+    assert (noise.stripe_frequency > 0) == kind.striped
+    if not kind.pigment:
+        assert (detail.reflectance.height_albedo, detail.reflectance.cell_albedo) == (0.0, 0.0)
+    assert (noise.weights[1] < 0) == kind.grains
+    curve = np.array(noise.curve)
+    assert curve.min() >= 0
+    assert curve.max() <= 1
+    if kind.fold == "none":
+        assert (np.diff(curve) >= 0).all()  # H rises, whatever the vector
+        assert (curve[0], curve[-1]) == (0.0, 1.0)
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(st.data(), KINDS)
+def test_decoding_undoes_encoding(data: st.DataObject, kind: Kind) -> None:
+    vector = np.clip(data.draw(vectors(kind)), 0.0, 0.999)
+    detail = SPACE.decode(kind, vector)
+    values: dict[str, float] = {}
+    for name, unit in zip(SPACE.names(kind), vector, strict=True):
+        group, _, field = name.partition(".")
+        low, high, _ = SPACE.range_of(name)
+        if group == "shape":
+            values[name] = low + unit * (high - low)
+        elif name == "roughness":
+            values[name] = detail.relief.amplitude * detail.noise.scale
+        else:
+            values[name] = getattr(getattr(detail, group), field)
+    assert SPACE.encode(kind, values) == pytest.approx(vector, abs=1e-6)
+
+
+def test_the_ends_of_the_box_are_the_bounds() -> None:
+    kind = Kind(1, 2, "gaussian", 3, True, pigment=True)
+    names = SPACE.names(kind)
+    low, high = (SPACE.decode(kind, np.full(len(names), v)) for v in (0.0, 1.0 - 1e-12))
+    assert (low.noise.scale, high.noise.scale) == pytest.approx((1.0, 60.0))
+    assert (low.noise.anisotropy, high.noise.anisotropy) == pytest.approx(SPACE.anisotropy)
+    assert (low.noise.stripe_frequency, high.noise.stripe_frequency) == pytest.approx(SPACE.stripes)
+    assert (low.noise.lacunarity, high.noise.lacunarity) == pytest.approx(bounds("noise.lacunarity"))
+    assert (low.noise.angle, high.noise.angle) == pytest.approx((0.0, math.pi), abs=1e-5)
+
+
+def test_angles_wrap_and_the_rest_is_clipped() -> None:
+    kind = Kind(1, 2, "gaussian", 1, False)
+    vector = np.full(len(SPACE.names(kind)), 0.3)
+    once, around = vector.copy(), vector.copy()
+    around[SPACE.names(kind).index("noise.angle")] += 1.0
+    assert SPACE.decode(kind, around).noise.angle == pytest.approx(SPACE.decode(kind, once).noise.angle)
+    beyond = vector.copy()
+    beyond[SPACE.names(kind).index("noise.scale")] = 1.7
+    assert SPACE.decode(kind, beyond).noise.scale == pytest.approx(60.0)
+
+
+def test_what_is_not_given_is_in_the_middle() -> None:
+    kind = Kind(1, 2, "gaussian", 1, False)
+    assert (SPACE.encode(kind, {}) == 0.5).all()
+    assert SPACE.decode(kind, SPACE.encode(kind, {})).noise.curve == pytest.approx(np.linspace(0, 1, 11))
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(st.lists(st.floats(-SHAPE_RANGE, SHAPE_RANGE), min_size=SHAPE_COUNT, max_size=SHAPE_COUNT))
+def test_a_profile_rises_from_nothing_to_one_and_is_found_again(shape: list[float]) -> None:
+    curve = profile(np.array(shape))
+    assert (curve[0], curve[-1]) == (0.0, 1.0)
+    assert (np.diff(curve) >= 0).all()
+    if np.diff(curve).min() > 0.011:  # `shape_of` sees no smaller steps
+        assert shape_of(tuple(curve)) == pytest.approx(shape, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", ["linear", "square", "root", "smoothstep", "plateau", "ramp", "step"])
+def test_a_starting_curve_is_met_about(name: str) -> None:
+    curve = np.array(START_CURVES[name])
+    assert np.abs(profile(shape_of(START_CURVES[name])) - curve).mean() < 0.12
+
+
+def test_folding() -> None:
+    rising = np.linspace(0, 1, 11)
+    assert fold(rising, "none") is rising
+    ridge, billow = fold(rising, "ridge"), fold(rising, "billow")
+    assert ridge == pytest.approx(1 - np.abs(np.linspace(-1, 1, 11)))
+    assert billow == pytest.approx(np.abs(np.linspace(-1, 1, 11)))
+    assert ridge + billow == pytest.approx(1.0)
+
+
+def test_a_decoded_detail_survives_its_file(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    for first, (kind_fold, pigment) in itertools.product(PAPER_NEIGHBOURS, [("none", False), ("ridge", True)]):
+        kind = Kind(*first, "gaussian", 2, True, kind_fold, False, pigment)
+        detail = rounded(SPACE.decode(kind, np.linspace(0, 1, len(SPACE.names(kind)))))
+        save_detail(tmp_path / "detail.json", detail)
+        assert load_detail(tmp_path / "detail.json") == detail
