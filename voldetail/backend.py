@@ -39,8 +39,20 @@ def mitsuba() -> ModuleType:
     mi = import_module("mitsuba")
     if mi.variant() != variant:
         mi.set_variant(variant)
+    if variant.startswith("llvm"):
+        _refuse_loaded()
     mi.set_log_level(mi.LogLevel.Error)
     return mi
+
+
+def _refuse_loaded() -> None:
+    """Refuse the LLVM that Dr.Jit has loaded where a program imported Dr.Jit before voldetail could choose."""
+    loaded = import_module("drjit").detail.llvm_version()
+    if loaded and 0 < loaded[0] < MINIMUM_LLVM:
+        raise BackendError(
+            f"Dr.Jit was imported before voldetail and took LLVM {loaded[0]}, which can abort the process: import"
+            " voldetail before drjit and mitsuba, or set DRJIT_LIBLLVM_PATH"
+        )
 
 
 def prepare() -> None:

@@ -87,7 +87,8 @@ def run(photograph: Photograph, output: Path, unshown: Path | None) -> dict[str,
         (place / "report.html").unlink()
         Image.open(sheet).convert("RGB").quantize(128, dither=Image.Dither.NONE).save(sheet, optimize=True)
         if photograph.shown:
-            save_image(place / "fit.png", np.concatenate([pictures.photo, pictures.fitted, _fitting(pictures.sphere, pictures.photo)], axis=1))
+            sphere = _fitting(pictures.sphere, pictures.photo)
+            save_image(place / "fit.png", np.concatenate([pictures.photo, pictures.fitted, sphere], axis=1))
     floor = result.detail.noise_floor
     return {
         "name": photograph.name, "light": photograph.light, "light_is": photograph.about, "credit": photograph.credit,

@@ -105,7 +105,7 @@ def growth() -> dict[str, Any]:
     target = make_target(setup)
     objective = Objective(target, build(setup, target.shape, target.zone), specular=True)
     for octaves in (1, 2, 4, 8):
-        rows["octaves"][octaves] = milliseconds(lambda d=_plain(octaves): objective.evaluate(d, 3))
+        rows["octaves"][octaves] = milliseconds(lambda n=octaves: objective.evaluate(_plain(n), 3))
     for resolution in (68, 96, 136, 192):
         slow = build(setup_for(resolution), target.shape, target.zone, fast=False)
 

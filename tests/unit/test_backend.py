@@ -138,3 +138,12 @@ def test_an_old_llvm_of_the_system_is_refused_and_aborts_nothing() -> None:
     done = run(RENDER, DRJIT_LIBLLVM_PATH=str(OLD_LLVM))
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith(f"refused DRJIT_LIBLLVM_PATH={OLD_LLVM} cannot be loaded")
+
+
+@pytest.mark.skipif(not OLD_LLVM.exists(), reason="this machine has no LLVM 15 to try it with")
+@pytest.mark.parametrize("first", ["drjit", "mitsuba"])
+def test_an_llvm_that_was_loaded_before_us_is_refused_too(first: str) -> None:
+    # What a program gets that imports Dr.Jit first, on a machine where that finds the system's LLVM 15.
+    done = run(f"import {first}\n" + "import os; os.environ.pop('DRJIT_LIBLLVM_PATH', None)\n" + RENDER)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith(("result", "refused Dr.Jit was imported before voldetail"))

@@ -45,7 +45,8 @@ def render(
     ``subsamples`` squared samples a pixel, the detail's ambient term being a uniform sky. Under an ``envmap``
     (equirectangular .exr or .hdr) it is path-traced with ``samples`` a pixel. ``scale`` makes the relief larger, cells
     and height alike; ``size`` is columns, rows; ``rotation`` turns the mesh about x, y, z in degrees; ``background`` is
-    the radiance where there is no surface; ``edge`` the length of the mesh's edges in pixels. Raises InputError for a mesh or environment that cannot be used.
+    the radiance where there is no surface; ``edge`` the length of the mesh's edges in pixels.
+    Raises InputError for a mesh or environment that cannot be used.
     """
     if envmap is not None and light is not None:
         raise InputError("A light and an environment map were both given: choose one.")

@@ -32,7 +32,9 @@ CHARACTERS = (
 The first two are GD10's."""
 
 
-def sampled(space: Space, count: int, seed: int, anisotropy: tuple[float, float], extended: bool = True) -> list[Candidate]:
+def sampled(
+    space: Space, count: int, seed: int, anisotropy: tuple[float, float], extended: bool = True
+) -> list[Candidate]:
     """Return ``count`` candidates that cover choices and numbers evenly (a scrambled Sobol sequence).
 
     ``anisotropy`` is (factor, angle) of the photo's own spectrum; half of the candidates start from it and half from

@@ -1,4 +1,4 @@
-"""The two ways through a fit: ours and the paper's. A plan is a list of stages that each better a pool of candidates."""
+"""The two ways through a fit, ours and the paper's: stages that each better a pool of candidates."""
 
 from __future__ import annotations
 
@@ -63,9 +63,7 @@ def default_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
         if factor < 1.0:
             candidates = candidates[:: math.ceil(1.0 / factor)]
         candidates += sampled(session.space, scaled(COVER), derived_seed(session.root_seed, "cover"), anisotropy)
-        session.pool = []
-        for c in candidates:
-            session.pool.append(replace(c, value=session.value(session.coarse, c.kind, c.vector, session.noise_seed(0))))
+        _compare(session, candidates)
         session.pool = best_distinct(session.pool, ROUNDS[0][0])
 
     def halving(index: int) -> Callable[[Session], None]:
@@ -119,10 +117,7 @@ def paper_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
         grid = paper_grid(session.space, anisotropy)
         count = min(len(grid), max(PAPER_KEPT, int(total * PAPER_SHARE)))
         chosen = np.random.default_rng(derived_seed(session.root_seed, "grid")).permutation(len(grid))[:count]
-        session.pool = []
-        for i in chosen:
-            c = grid[i]
-            session.pool.append(replace(c, value=session.value(session.coarse, c.kind, c.vector, session.noise_seed(0))))
+        _compare(session, [grid[i] for i in chosen])
         session.pool = sorted(session.pool, key=lambda c: c.value)[:PAPER_KEPT]
 
     def descend(session: Session) -> None:
@@ -132,6 +127,14 @@ def paper_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
         session.pool.sort(key=lambda c: c.value)
 
     return Plan((Stage("coarse samples", coarse), Stage("gradient descent", descend)), total)
+
+
+def _compare(session: Session, candidates: list[Candidate]) -> None:
+    """Fill the pool with ``candidates`` and their values at half resolution, one by one: an interruption keeps them."""
+    session.pool = []
+    for candidate in candidates:
+        value = session.value(session.coarse, candidate.kind, candidate.vector, session.noise_seed(0))
+        session.pool.append(replace(candidate, value=value))
 
 
 def _refine_pool(session: Session, budget: int, *, fine: bool) -> None:

@@ -27,6 +27,13 @@ SAMPLES = 9000
 
 DESCENT_STEPS = 300
 
+GLOSS_GAIN = 0.7
+"""A highlight has to take away this much of a matt surface's residual: a broad one on flat relief can stand for shading
+that relief should make, and then shines on every other shape. Tuned on the weathered rock of ../shared/data."""
+
+GLOSS_LIMIT = 0.15
+"""Largest Ks: some three times what a clean dielectric reflects head-on."""
+
 DARK = 0.03
 """Linear luminance below which differences count less and less, in the weights 1 / (q + DARK): about where sRGB's curve
 leaves its linear part."""
@@ -56,14 +63,15 @@ def solve(
     weights = 1.0 / (wanted + DARK)
     ambient, diffuse = parts.ambient.ravel()[index], parts.diffuse.ravel()[index]
     best: Coefficients | None = None
-    lobes = range(len(parts.shininess)) if specular else (-1,)
+    # Matt first: a highlight has to be worth it.
+    lobes = (-1, *range(len(parts.shininess))) if specular else (-1,)
     start, steps = np.array([0.3, 0.5]), STEPS
     for lobe in lobes:
         columns = [ambient, diffuse] + ([parts.specular[lobe].ravel()[index]] if lobe >= 0 else [])
         found, residual = _alternate(np.stack(columns, axis=1).astype(np.float64), wanted, weights, start, steps)
         # The other lobes start where the first one ended, so one step less settles them.
         start, steps = found[:2], STEPS - 1
-        if best is None or residual < best.residual:
+        if best is None or residual < best.residual * (GLOSS_GAIN if best.specular == 0.0 else 1.0):
             gloss = float(found[2]) if lobe >= 0 else 0.0
             exponent = parts.shininess[lobe] if lobe >= 0 else parts.shininess[0]
             best = Coefficients(float(found[0]), float(found[1]), gloss, exponent, residual)
@@ -89,13 +97,16 @@ def _alternate(
     for _ in range(steps):
         order = np.argsort(columns @ current)
         means = _group_means(columns[order])
-        current = bounded_least_squares(means * weights[:, None], wanted * weights)
+        upper = (1.0, 1.0, GLOSS_LIMIT)[: columns.shape[1]]
+        current = bounded_least_squares(means * weights[:, None], wanted * weights, upper)
         residual = float(np.mean((weights * (means @ current - wanted)) ** 2))
     return current, residual
 
 
-def bounded_least_squares(matrix: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return x in [0, 1]^k that minimises |matrix x - values|.
+def bounded_least_squares(
+    matrix: NDArray[np.float64], values: NDArray[np.float64], upper: tuple[float, ...] | None = None
+) -> NDArray[np.float64]:
+    """Return x, 0 <= x <= ``upper`` (default 1 each), that minimises |matrix x - values|.
 
     The free solution where it obeys the bounds, else coordinate descent from it, which for a convex problem in a box
     ends at the optimum. With three unknowns that is a tenth of the time a general solver takes.
@@ -105,15 +116,16 @@ def bounded_least_squares(matrix: NDArray[np.float64], values: NDArray[np.float6
     # A trace of ridge keeps columns that are zero (no highlight, all in shadow) from making the system singular.
     gram = gram + (1e-9 * float(np.trace(gram)) + 1e-12) * np.eye(count)
     free = np.linalg.solve(gram, right)
-    if free.min() >= 0.0 and free.max() <= 1.0:
+    top = upper or (1.0,) * count
+    if free.min() >= 0.0 and (free <= top).all():
         return np.asarray(free)
     rows, target = gram.tolist(), right.tolist()
-    x = [min(max(v, 0.0), 1.0) for v in free.tolist()]
+    x = [min(max(v, 0.0), t) for v, t in zip(free.tolist(), top, strict=True)]
     for _ in range(DESCENT_STEPS):
         change = 0.0
         for i in range(count):
             rest = target[i] - sum(rows[i][j] * x[j] for j in range(count) if j != i)
-            new = min(max(rest / rows[i][i], 0.0), 1.0)
+            new = min(max(rest / rows[i][i], 0.0), top[i])
             change = max(change, abs(new - x[i]))
             x[i] = new
         if change < 1e-7:

@@ -107,7 +107,9 @@ class Session:
         return derived_seed(self.root_seed, f"unseen/{index}")
 
     def check(self) -> None:
-        """Raise Stopped when the budget is used up."""
+        """Raise Stopped when the budget is used up; not before there is something to show."""
+        if self.first is None and not self.pool:
+            return
         if self.evaluations >= self.planned:
             raise Stopped("the budget of evaluations was used up")
         if self.time_limit is not None and self.seconds > self.time_limit:
