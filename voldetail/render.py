@@ -25,8 +25,9 @@ from voldetail.scene.lamp import Lamp
 from voldetail.scene.surface import MeshSurface
 from voldetail.scene.traced import path_integrator, sensor_of
 
-SHININESS = (4.0, 16.0, 64.0)
-"""Exponents whose lobes are rendered for the reflectance solve; a factor of 4 apart, about 2 in the lobe's width."""
+SHININESS = (16.0, 64.0)
+"""Exponents whose lobes are rendered for the reflectance solve; a factor of 4 apart, about 2 in the lobe's width. A
+broader lobe could not be told from diffuse light."""
 
 
 @dataclass(frozen=True)

@@ -128,13 +128,7 @@ def _session(
     planner = paper_plan if setup.fit.solver == "paper" else default_plan
     plan = planner(anisotropy(target.luminance, target.mask), setup.fit.evaluations)
     fine = Objective(target, build(setup, target.shape, target.zone), specular=setup.fit.specular)
-    # Half the pixels, or as many more as the metric needs on the shorter side.
-    longest, shortest = max(target.mask.shape), min(target.mask.shape)
-    resolution = min(longest, max(longest // 2, math.ceil(SMALLEST_ZONE * longest / shortest)))
-    half = setup.model_copy(update={"photo": setup.photo.model_copy(update={"resolution": resolution})})
-    surface = build(half, target.shape, target.zone)
-    coarse_target = target.reduced(setup.fit.metric, (surface.view.rows, surface.view.columns))
-    coarse = Objective(coarse_target, surface, specular=setup.fit.specular)
+    coarse = _coarse(setup, target)
     # The budget that the user named is a limit; the plan's own is an estimate with room for rounding.
     planned = setup.fit.evaluations or plan.evaluations
     session = Session(
@@ -142,6 +136,20 @@ def _session(
         on_progress, on_state, start, stages=len(plan.stages),
     )
     return session, plan.stages
+
+
+def _coarse(setup: Setup, target: Target) -> Objective:
+    """Return the objective of the coarse pass: half the pixels, or as many more as the metric needs."""
+    longest, shortest = max(target.mask.shape), min(target.mask.shape)
+    resolution = min(longest, max(longest // 2, math.ceil(SMALLEST_ZONE * longest / shortest)))
+    half = setup.model_copy(update={"photo": setup.photo.model_copy(update={"resolution": resolution})})
+    surface = build(half, target.shape, target.zone)
+    try:
+        reduced = target.reduced(setup.fit.metric, (surface.view.rows, surface.view.columns))
+    except InputError:
+        # The mask leaves enough at full resolution, and too little at half.
+        reduced, surface = target, build(setup, target.shape, target.zone)
+    return Objective(reduced, surface, specular=setup.fit.specular)
 
 
 def _finish(session: Session) -> Evaluation:

@@ -118,7 +118,7 @@ def bounded_least_squares(
     free = np.linalg.solve(gram, right)
     top = upper or (1.0,) * count
     if free.min() >= 0.0 and (free <= top).all():
-        return np.asarray(free)
+        return np.asarray(free + 0.0)  # no -0
     rows, target = gram.tolist(), right.tolist()
     x = [min(max(v, 0.0), t) for v, t in zip(free.tolist(), top, strict=True)]
     for _ in range(DESCENT_STEPS):
