@@ -53,7 +53,7 @@ def test_a_detail_on_a_shape_under_a_light(light: str, shape: str, mesh: Path) -
     assert np.isfinite(picture).all()
     assert picture.min() >= 0
     covered = picture[..., 1] > 0.01
-    assert covered.mean() > (0.99 if shape == "plane" else 0.2)
+    assert covered.mean() > {"plane": 0.99, "sphere": 0.2}.get(shape, 0.1)
     # Matt: all pixels have the tint's colour.
     assert picture[covered][:, 0] == pytest.approx(picture[covered][:, 1] * 1.2, rel=1e-3)
     smooth = render(SMOOTH, target, light=parse_light(light), size=SIZE)
@@ -185,7 +185,7 @@ def test_what_cannot_be_is_refused_in_a_sentence(arguments: dict[str, Any], sent
     assert len(str(refused.value).splitlines()) == 1
 
 
-@pytest.mark.parametrize("fault", ["text", "empty", "nan", "negative", "one pixel"])
+@pytest.mark.parametrize("fault", ["text", "empty", "nan", "negative"])
 def test_a_bad_environment_is_refused_in_a_sentence(tmp_path: Path, fault: str) -> None:
     path = tmp_path / "sky.exr"
     pixels = np.ones((8, 16, 3), dtype=np.float32)
@@ -194,8 +194,8 @@ def test_a_bad_environment_is_refused_in_a_sentence(tmp_path: Path, fault: str) 
     elif fault == "empty":
         path.write_bytes(b"")
     else:
-        pixels[2, 3, 1] = {"nan": np.nan, "negative": -1.0}.get(fault, 1.0)
-        mitsuba().Bitmap(pixels[:1, :1] if fault == "one pixel" else pixels).write(str(path))
+        pixels[2, 3, 1] = np.nan if fault == "nan" else -1.0
+        mitsuba().Bitmap(pixels).write(str(path))
     with pytest.raises(InputError, match=r"environment map sky\.exr") as refused:
         render(SMOOTH, "sphere", envmap=path, size=(32, 32), samples=4)
     assert len(str(refused.value).splitlines()) == 1
@@ -203,7 +203,7 @@ def test_a_bad_environment_is_refused_in_a_sentence(tmp_path: Path, fault: str) 
 
 @pytest.mark.parametrize("elevation", [0.0, -10.0, 91.0])
 def test_a_light_from_behind_is_refused(elevation: float) -> None:
-    with pytest.raises(InputError, match="elevation .* is out of range"):
+    with pytest.raises(InputError, match=r"elevation .* is out of range"):
         next(relight(SMOOTH, azimuths=[0.0], elevations=[30.0, elevation]))
 
 

@@ -261,4 +261,4 @@ def test_a_second_evaluation_compiles_nothing(proxy: str) -> None:
                 objective.evaluate(space.decode(kind, vector), seed)
             kernels = [entry for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT]
         assert len(kernels) >= 3 * (len(vectors) - 1)
-        assert all(entry["cache_hit"] for entry in kernels)
+        assert [k["operation_count"] for k in kernels if not k["cache_hit"]] == []

@@ -11,7 +11,7 @@ from tests.system.scenes import SIDE, detail, setup
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
 from voldetail.metric import describe, distance
-from voldetail.render import SHININESS, Components, components
+from voldetail.render import Components, components
 from voldetail.scene import heightfield, surface
 from voldetail.scene.build import build
 from voldetail.scene.heightfield import HeightField
@@ -29,6 +29,7 @@ LAMPS = {
     "low": Lamp(direction=direction_of(200, 15)),
     "flash": Lamp(position=(0.2, 0.1, 1.5), at_camera=True),
 }
+SHININESS = (4.0, 16.0, 64.0)
 FLAT, RAISED = (0.0,) * 11, (1.0,) * 11
 
 two_ways = pytest.mark.parametrize("fast", WAYS, ids=lambda fast: NAMES[fast])
@@ -38,7 +39,7 @@ def look(what: Detail, lamp: Lamp, fast: bool, subsamples: int = 2, **fields: An
     seen = build(setup(domain=what.noise.domain, **fields), SHAPE, ZONE, fast=fast)
     assert isinstance(seen, HeightField if fast else MeshSurface)
     seen.update(what)
-    return components(seen, lamp, subsamples=subsamples)
+    return components(seen, lamp, subsamples=subsamples, shininess=SHININESS)
 
 
 def apart(a: NDArray[np.float32], b: NDArray[np.float32]) -> float:
@@ -187,7 +188,7 @@ def test_there_is_no_grain_to_be_measured(fast: bool) -> None:
     seen.update(detail())
     counts = (1, 2, 3, 5)
     one, two, three, most = (
-        components(seen, LAMPS["high"], subsamples=n).luminance(0.1, 0.5, 0.05, SHININESS[1]) for n in counts
+        components(seen, LAMPS["high"], subsamples=n, shininess=SHININESS).luminance(0.1, 0.5, 0.05, SHININESS[1]) for n in counts
     )
     like = describe(most, metric="published")
     floor = distance(like, describe(other_seed(seen), like=like))
@@ -200,7 +201,7 @@ def test_there_is_no_grain_to_be_measured(fast: bool) -> None:
 
 def other_seed(seen: HeightField | MeshSurface) -> NDArray[np.float32]:
     seen.update(detail().model_copy(update={"seed": 5}))
-    return components(seen, LAMPS["high"]).luminance(0.1, 0.5, 0.05, SHININESS[1])
+    return components(seen, LAMPS["high"], shininess=SHININESS).luminance(0.1, 0.5, 0.05, SHININESS[1])
 
 
 def test_every_ray_finds_a_closed_surface() -> None:

@@ -56,7 +56,7 @@ def details(draw: st.DrawFn) -> Detail:
     values: dict[str, Any] = {}
     for p in PARAMETERS:
         number = st.floats(p.lower, p.upper)
-        if p.key == "noise.curve":
+        if p.key in ("noise.curve", "noise.weights"):
             values[p.key] = draw(st.tuples(*[number] * p.count))
         elif p.key == "reflectance.tint":
             r, g, b = draw(st.tuples(*[st.floats(0.01, 1)] * 3))

@@ -31,8 +31,8 @@ ALLOWED: dict[str, set[str]] = {
     "backend": set(),
     "errors": set(),
     "files": set(),
-    # The package itself: picks an LLVM on import, and loads the names of the API when they are asked for.
-    "voldetail": {"backend", *EVERYTHING} - {"cli"},
+    "api": EVERYTHING - {"cli"},  # the names for Python, over all that they need
+    "voldetail": {"backend", "api"},  # the package itself: picks an LLVM on import, and may pass on the names
 }
 TYPES_ONLY = {("report", "fit"), ("report", "apply"), ("report", "scene")}
 """Records that a report is given and reads, named for the type checker alone: nothing of them is loaded."""

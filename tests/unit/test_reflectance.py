@@ -8,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from voldetail.fit.reflectance import RANKS, bounded_least_squares, solve
+from voldetail.fit.reflectance import GLOSS_LIMIT, RANKS, bounded_least_squares, solve
 from voldetail.render import SHININESS, Components
 
 SIDE = 48
@@ -64,7 +64,7 @@ def parts(seed: int = 1) -> Components:
 
 
 @pytest.mark.parametrize("shininess", SHININESS)
-@pytest.mark.parametrize("wanted", [(0.2, 0.5, 0.1), (0.05, 0.8, 0.02), (0.4, 0.1, 0.05)])
+@pytest.mark.parametrize("wanted", [(0.2, 0.5, 0.1), (0.05, 0.8, 0.05), (0.4, 0.1, 0.05)])
 def test_known_coefficients_come_back(wanted: tuple[float, float, float], shininess: float) -> None:
     seen = parts()
     photo = seen.luminance(*wanted, shininess)
@@ -85,7 +85,25 @@ def test_a_matt_picture_has_no_highlight_and_none_is_forced() -> None:
     assert (found.ambient, found.diffuse) == pytest.approx((0.2, 0.6), abs=0.02)
     glossy = seen.luminance(0.2, 0.6, 0.3, 64.0)
     assert solve(glossy, seen, WHOLE, specular=False).specular == 0.0
-    assert solve(glossy, seen, WHOLE).specular > 0.2
+    assert solve(glossy, seen, WHOLE).specular == GLOSS_LIMIT
+
+
+def test_a_highlight_that_gains_little_is_not_taken() -> None:
+    seen = parts()
+    faint = solve(seen.luminance(0.2, 0.6, 0.0, 16.0) + np.float32(1e-4) * seen.specular[0], seen, WHOLE)
+    plain = solve(seen.luminance(0.2, 0.6, 0.05, SHININESS[-1]), seen, WHOLE)
+    assert faint.specular == pytest.approx(0.0, abs=2e-4)
+    assert plain.specular == pytest.approx(0.05, abs=0.01)
+
+
+@pytest.mark.parametrize("upper", [(1.0, 1.0, 0.15), (0.5, 0.2, 0.1)])
+def test_other_bounds_are_kept_and_the_optimum_is_scipys(upper: tuple[float, float, float]) -> None:
+    rng = np.random.default_rng(12)
+    for _ in range(100):
+        matrix, values = np.abs(rng.normal(size=(24, 3))), np.abs(rng.normal(size=24))
+        found = bounded_least_squares(matrix, values, upper)
+        wanted = lsq_linear(matrix, values, bounds=(0, upper), method="bvls").x
+        assert found == pytest.approx(wanted, abs=1e-4)
 
 
 def test_only_the_mask_counts() -> None:
@@ -114,6 +132,7 @@ def test_no_coefficient_leaves_its_bounds_whatever_the_photo(
 ) -> None:
     photo = np.abs(level + contrast * np.random.default_rng(seed).normal(size=(SIDE, SIDE))).astype(np.float32)
     found = solve(photo, parts(seed % 7), WHOLE, specular=specular)
-    for value in (found.ambient, found.diffuse, found.specular):
+    for value in (found.ambient, found.diffuse):
         assert 0 <= value <= 1
+    assert 0 <= found.specular <= GLOSS_LIMIT
     assert found.shininess in SHININESS

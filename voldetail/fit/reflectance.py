@@ -25,7 +25,7 @@ STEPS = 3
 SAMPLES = 9000
 """Pixels used at most: enough for 24 groups of some 400."""
 
-DESCENT_STEPS = 300
+ACTIVE_SET_STEPS = 12
 
 GLOSS_GAIN = 0.7
 """A highlight has to take away this much of a matt surface's residual: a broad one on flat relief can stand for shading
@@ -108,26 +108,32 @@ def bounded_least_squares(
 ) -> NDArray[np.float64]:
     """Return x, 0 <= x <= ``upper`` (default 1 each), that minimises |matrix x - values|.
 
-    The free solution where it obeys the bounds, else coordinate descent from it, which for a convex problem in a box
-    ends at the optimum. With three unknowns that is a tenth of the time a general solver takes.
+    An active set: unknowns that leave the box are held at its side, and let go where the gradient points inwards. With
+    three unknowns that is a few tiny systems, a tenth of the time that a general solver takes.
     """
     gram, right = matrix.T @ matrix, matrix.T @ values
     count = len(right)
     # A trace of ridge keeps columns that are zero (no highlight, all in shadow) from making the system singular.
     gram = gram + (1e-9 * float(np.trace(gram)) + 1e-12) * np.eye(count)
-    free = np.linalg.solve(gram, right)
-    top = upper or (1.0,) * count
-    if free.min() >= 0.0 and (free <= top).all():
-        return np.asarray(free + 0.0)  # no -0
-    rows, target = gram.tolist(), right.tolist()
-    x = [min(max(v, 0.0), t) for v, t in zip(free.tolist(), top, strict=True)]
-    for _ in range(DESCENT_STEPS):
-        change = 0.0
-        for i in range(count):
-            rest = target[i] - sum(rows[i][j] * x[j] for j in range(count) if j != i)
-            new = min(max(rest / rows[i][i], 0.0), top[i])
-            change = max(change, abs(new - x[i]))
-            x[i] = new
-        if change < 1e-7:
+    top = np.ones(count) if upper is None else np.array(upper)
+    held: dict[int, float] = {}
+    x = np.zeros(count)
+    for _ in range(ACTIVE_SET_STEPS):
+        free = [i for i in range(count) if i not in held]
+        for i, side in held.items():
+            x[i] = side
+        if free:
+            rest = right[free] - sum(gram[free, i] * side for i, side in held.items())
+            x[free] = np.linalg.solve(gram[np.ix_(free, free)], rest)
+        outside = np.maximum(-x, x - top)
+        worst = int(np.argmax(outside))
+        if outside[worst] > 1e-12:
+            held[worst] = 0.0 if x[worst] < 0.0 else float(top[worst])
+            continue
+        slope = gram @ x - right
+        pull = {i: (-slope[i] if side == 0.0 else slope[i]) for i, side in held.items()}
+        loosest = max(pull, key=lambda i: pull[i], default=None)
+        if loosest is None or pull[loosest] <= 1e-10 * float(np.trace(gram)):
             break
-    return np.array(x)
+        del held[loosest]
+    return np.clip(x, 0.0, top)
