@@ -44,6 +44,10 @@ class NoiseParameters(Record):
     domain: Literal["solid", "surface"] = declared("noise.domain")
     first_neighbour: int = declared("noise.first_neighbour")
     last_neighbour: int = declared("noise.last_neighbour")
+    joining: Literal["sum", "highest"] = declared("noise.joining")
+    facets: float = declared("noise.facets")
+    elongation: float = declared("noise.elongation")
+    size_spread: float = declared("noise.size_spread")
     weights: tuple[Annotated[float, limits("noise.weights")], ...] = declared("noise.weights")
     envelope: Literal["exponential", "gaussian"] = declared("noise.envelope")
     octaves: int = declared("noise.octaves")
@@ -63,6 +67,8 @@ class NoiseParameters(Record):
             raise ValueError(
                 f"the neighbours {pair[0]} (first) and {pair[1]} (last) are not allowed; use {known}"
             )
+        if self.joining == "highest" and pair != (1, 50):
+            raise ValueError('joining "highest" takes all points: use the neighbours 1 (first) and 50 (last)')
         return self
 
 

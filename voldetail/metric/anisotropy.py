@@ -20,6 +20,9 @@ MOST = 8.0
 SMALLEST = 32
 """Pixels that the zone's shorter side must have."""
 
+FLAT = 1e-5
+"""Range of encoded values below which a picture varies by rounding alone; an 8-bit step is 400 times as much."""
+
 
 def anisotropy(luminance: NDArray[np.floating], mask: Mask | None = None) -> tuple[float, float]:
     """Factor >= 1 and angle in [0, pi) such that the texture is `factor` times longer along `angle` than across.
@@ -36,6 +39,8 @@ def anisotropy(luminance: NDArray[np.floating], mask: Mask | None = None) -> tup
     Raises InputError where no zone of 32 x 32 pixels is left.
     """
     image, use = _zone(luminance, mask)
+    if np.ptp(image[use]) < FLAT:
+        return 1.0, 0.0
     window = np.sqrt(np.outer(np.hanning(image.shape[0] + 2)[1:-1], np.hanning(image.shape[1] + 2)[1:-1])) * use
     window *= window
     image = (image - np.sum(image * window) / np.sum(window)) * window

@@ -8,8 +8,9 @@ Symbols
     H       eleven control points (noise.curve)
 
 The paper calls eta a constant and says no more. Octaves use independent points, so mean and deviation of
-their sum follow from those of one octave (`moments`). With z = (sum - mean) / (ETA deviation), the argument
-of H is z / sqrt(1 + z^2): strictly inside [-1, 1], without the plateaus that clipping would give; what it
+their sum follow from those of one octave (`moments`): each is brought to mean 0 and deviation 1, which for equal
+octaves changes nothing but the constant, and lets grains be followed by plain noise. With z = sum / (ETA deviation of
+the sum), the argument of H is z / sqrt(1 + z^2): strictly inside [-1, 1], without the plateaus that clipping would give; what it
 bends, the free curve H can unbend.
 """
 
@@ -44,29 +45,33 @@ def relief_function(
     stripe_frequency: Any,
     stripe_spread: Any,
     curve: Any,
+    facets: Any = 0.0,
+    elongation: Any = 1.0,
+    size_spread: Any = 0.0,
 ) -> Any:
     """Return R(x) in [0, 1], eq. 3, at ``points`` (2 or 3 float arrays, scene units).
 
     ``seed`` is a UInt array; ``curve`` a float array of eleven values; the others floats or float arrays of
-    width 1, differentiable. Keep what changes opaque (`dr.opaque`), else each value compiles a kernel.
+    width 1, differentiable. ``facets``, ``elongation`` and ``size_spread`` shape the grains where the highest counts. Keep what
+    changes opaque (`dr.opaque`), else each value compiles a kernel.
     """
     float_type: Any = type(points[0])
     x = frame(points, scale, anisotropy, angle)
-    mean, deviation = differentiable_moments(settings, float_type, stripe_frequency, stripe_spread)
     total = dr.zeros(float_type, dr.width(points[0]))
     weight: Any = float_type(1.0)
     frequency: Any = float_type(1.0)
-    sum_of_weights: Any = float_type(0.0)
     sum_of_squares: Any = float_type(0.0)
     for octave in range(settings.octaves):
         scaled = tuple(v * frequency for v in x)
         salt = seed + (octave * OCTAVE_SALT & 0xFFFFFFFF)
-        total += weight * single_octave(scaled, settings, salt, stripe_frequency, stripe_spread)
-        sum_of_weights += weight
+        own = settings.of_octave(octave)
+        numbers = (facets, elongation, size_spread) if own.highest else (stripe_frequency, stripe_spread)
+        mean, deviation = differentiable_moments(own, float_type, *numbers)
+        total += (weight / deviation) * (single_octave(scaled, own, salt, *numbers) - mean)
         sum_of_squares += weight * weight
         weight = weight / lacunarity
         frequency = frequency * lacunarity
-    z = (total - mean * sum_of_weights) / (ETA * deviation * dr.sqrt(sum_of_squares))
+    z = total / (ETA * dr.sqrt(sum_of_squares))
     # Not dr.rsqrt: its last bits come from the processor's own estimate and differ between machines.
     return evaluate_curve(curve, z / dr.sqrt(1.0 + z * z), CURVE_POINTS)
 

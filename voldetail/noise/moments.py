@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -23,27 +24,24 @@ STEP = 1e-2
 """Step of the central difference for the slope of the moments; their error is about (2 pi STEP)^2 / 6."""
 
 
-def moments(settings: NoiseSettings, float_type: Any, phi: float, theta: float) -> tuple[float, float]:
+def moments(settings: NoiseSettings, float_type: Any, *numbers: float) -> tuple[float, float]:
     """Return (mean, deviation) of one octave of noise, over fixed low-discrepancy positions and a fixed salt.
 
-    They depend on what is discrete, on phi and on theta only, not on the detail's seed. `math.fsum` rounds
+    They depend on what is discrete and on ``numbers`` (those of `single_octave`) only, not on the detail's seed. `math.fsum` rounds
     once, so the result does not depend on the order of summation.
     """
-    return _moments(
-        settings.dims, settings.everywhere, settings.weights, settings.gaussian, float_type, phi, theta
-    )
+    return _moments(replace(settings, octaves=1), float_type, numbers)
 
 
-def differentiable_moments(settings: NoiseSettings, float_type: Any, phi: Any, theta: Any) -> tuple[Any, Any]:
-    """Return `moments` as arrays that carry the gradient with respect to ``phi`` and ``theta``."""
-    values = (_first(phi), _first(theta))
+def differentiable_moments(settings: NoiseSettings, float_type: Any, *numbers: Any) -> tuple[Any, Any]:
+    """Return `moments` as arrays that carry the gradient with respect to ``numbers``."""
+    values = tuple(_first(number) for number in numbers)
     mean, deviation = moments(settings, float_type, *values)
-    # dr.opaque: the numbers change with phi and theta and must not become code.
+    # dr.opaque: the moments change with the numbers and must not become code.
     mean, deviation = dr.opaque(float_type, mean), dr.opaque(float_type, deviation)
-    for axis, argument in enumerate((phi, theta)):
+    for axis, argument in enumerate(numbers):
         if isinstance(argument, float_type) and dr.grad_enabled(argument):
-            # Both moments are smooth in all real phi and theta (and even in phi), so no end
-            # needs a one-sided step.
+            # Both moments are smooth in all real numbers, so no end of a range needs a one-sided step.
             below, above = (
                 moments(settings, float_type, *(v + sign * STEP * (i == axis) for i, v in enumerate(values)))
                 for sign in (-1.0, 1.0)
@@ -59,26 +57,13 @@ def _first(value: Any) -> float:
 
 
 @lru_cache(maxsize=4096)
-def _moments(
-    dims: int,
-    everywhere: bool,
-    weights: tuple[float, float, float],
-    gaussian: bool,
-    float_type: Any,
-    phi: float,
-    theta: float,
-) -> tuple[float, float]:
-    settings = NoiseSettings(dims, everywhere, weights, 1, gaussian)
+def _moments(settings: NoiseSettings, float_type: Any, numbers: tuple[float, ...]) -> tuple[float, float]:
     index = np.arange(1, MOMENT_SAMPLES + 1, dtype=np.float64)
-    steps = [GOLDEN[dims] ** -(axis + 1) for axis in range(dims)]
+    steps = [GOLDEN[settings.dims] ** -(axis + 1) for axis in range(settings.dims)]
     x = tuple(float_type((np.mod(index * step, 1.0) * MOMENT_BLOCK).astype(np.float32)) for step in steps)
-    uint_type = dr.uint32_array_t(float_type)
-    salt, phi_array, theta_array = (
-        dr.opaque(uint_type, MOMENT_SALT),
-        dr.opaque(float_type, phi),
-        dr.opaque(float_type, theta),
-    )
-    samples = np.asarray(single_octave(x, settings, salt, phi_array, theta_array), dtype=np.float64)
+    salt = dr.opaque(dr.uint32_array_t(float_type), MOMENT_SALT)
+    arrays = (dr.opaque(float_type, number) for number in numbers)
+    samples = np.asarray(single_octave(x, settings, salt, *arrays), dtype=np.float64)
     mean = math.fsum(samples) / MOMENT_SAMPLES
     variance = math.fsum((samples - mean) ** 2) / MOMENT_SAMPLES
     return mean, math.sqrt(max(variance, 1e-12))

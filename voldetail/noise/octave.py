@@ -22,13 +22,14 @@ Choices that the paper leaves open, or that are ours:
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import drjit as dr
 import numpy as np
 from numpy.typing import NDArray
 
+from voldetail.noise.grains import GrainShape, highest_grain
 from voldetail.noise.lattice import FOURTH_POINT_RADIUS, RANKS, UNIT_16, Neighbourhood, nearest_points
 
 SIGMA = 0.25
@@ -73,7 +74,8 @@ class NoiseSettings:
 
     dims: 2 on surface parameters, 3 in space. everywhere: True for (1, 50). weights: signed weight of the 1st
     to 3rd closest point, used when not everywhere; (k, k') is ones from k to k'. octaves: n >= 1. gaussian:
-    envelope of the squared distance (round tops) instead of eq. 2's plain distance (pointed tops).
+    envelope of the squared distance (round tops) instead of eq. 2's plain distance (pointed tops). highest: the
+    coarsest octave is made of grains (noise.grains), of which the highest counts, and `everywhere` holds.
     """
 
     dims: int = 3
@@ -81,6 +83,7 @@ class NoiseSettings:
     weights: tuple[float, float, float] = (1.0, 1.0, 0.0)
     octaves: int = 1
     gaussian: bool = False
+    highest: bool = False
 
     @staticmethod
     def from_ranks(
@@ -90,6 +93,7 @@ class NoiseSettings:
         octaves: int = 1,
         gaussian: bool = False,
         signs: tuple[float, ...] = (1.0, 1.0, 1.0),
+        highest: bool = False,
     ) -> NoiseSettings:
         """Return the settings for GD10's k = first, k' = last: (1, 50) or any 1 <= k <= k' <= 3.
 
@@ -97,17 +101,27 @@ class NoiseSettings:
         falls to zero where two points are equally close: the border between grains.
         """
         if (first, last) == (1, 50):
-            return NoiseSettings(dims, True, (1.0, 1.0, 1.0), octaves, gaussian)
+            return NoiseSettings(dims, True, (1.0, 1.0, 1.0), octaves, gaussian, highest)
+        if highest:
+            raise ValueError(f"the highest of all grains needs (k, k') = (1, 50), not ({first}, {last})")
         if not 1 <= first <= last <= RANKS - 1:
             raise ValueError(f"(k, k') = ({first}, {last}) is neither (1, 50) nor 1 <= k <= k' <= 3")
         w = tuple(float(signs[i - 1]) if first <= i <= last else 0.0 for i in (1, 2, 3))
         return NoiseSettings(dims, False, (w[0], w[1], w[2]), octaves, gaussian)
 
+    def of_octave(self, octave: int) -> NoiseSettings:
+        """Return the settings of one octave alone; grains are the coarsest, and what is finer is their roughness."""
+        return replace(self, octaves=1, highest=self.highest and octave == 0)
 
-def single_octave(
-    x: tuple[Any, ...], settings: NoiseSettings, salt: Any, stripe_frequency: Any, stripe_spread: Any
-) -> Any:
-    """Return N(x), eq. 2, for ``x`` in cells; continuous everywhere, differentiable almost everywhere."""
+
+def single_octave(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, *numbers: Any) -> Any:
+    """Return N(x), eq. 2, for ``x`` in cells; continuous everywhere, differentiable almost everywhere.
+
+    ``numbers`` are the stripes' frequency phi and spread theta, or the three of a `GrainShape` where the highest counts.
+    """
+    if settings.highest:
+        return highest_grain(x, salt, GrainShape(*numbers), settings.gaussian)[0]
+    stripe_frequency, stripe_spread = numbers
     if settings.everywhere:
         return _sum_of_all(x, settings, salt, stripe_frequency, stripe_spread)
     return _sum_of_ranks(x, settings, salt, stripe_frequency, stripe_spread)

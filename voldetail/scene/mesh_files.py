@@ -107,7 +107,10 @@ def _buffers(data: bytes, suffix: str, path: Path) -> dict[str, bytes]:
         place = path.parent / name
         if "://" in uri or name.is_absolute() or not place.resolve().is_relative_to(path.parent.resolve()):
             raise InputError(f"The mesh {path} refers to {uri!r} outside its own folder; save it as .glb instead.")
-        found[uri] = readable(place, "buffer of a mesh", MAX_BYTES).read_bytes()
+        try:
+            found[uri] = readable(place, "buffer", MAX_BYTES).read_bytes()
+        except InputError as error:
+            raise InputError(f"The mesh {path} cannot be used without the file that it refers to: {error}") from None
     return found
 
 
