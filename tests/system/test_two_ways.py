@@ -128,10 +128,10 @@ def step(monkeypatch: pytest.MonkeyPatch) -> None:
     """Relief 1 left of x = 0 and 0 right of it, instead of noise."""
 
     def relief(what: Detail, domain: tuple[Any, ...], scale: float = 1.0) -> Any:
-        return mitsuba().Float(np.where(np.array(domain[0]) < 0, 1.0, 0.0).astype(np.float32))
+        return mitsuba().Float(np.where(np.array(domain[0]) < 0, 1.0, 0.0).astype(np.float32)), None
 
-    monkeypatch.setattr(heightfield, "relief_at", relief)
-    monkeypatch.setattr(surface, "relief_at", relief)
+    monkeypatch.setattr(heightfield, "relief_and_albedo", relief)
+    monkeypatch.setattr(surface, "relief_and_albedo", relief)
 
 
 @two_ways

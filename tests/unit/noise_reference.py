@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from voldetail.noise import grains
 from voldetail.noise import octave as constants
 from voldetail.noise.gabor import ETA, OCTAVE_SALT
 from voldetail.noise.moments import MOMENT_BLOCK, MOMENT_SALT, MOMENT_SAMPLES
@@ -96,6 +97,35 @@ def single_octave(
     return total
 
 
+def highest_grain(
+    x: Floats, salt: int, facets: float, elongation: float, spread: float, rounded: bool
+) -> tuple[Floats, NDArray[np.uint32]]:
+    """Height (N,) and hash word (N,) of the body on top, from all cells within three of a position."""
+    offsets = np.array(list(itertools.product(range(-3, 4), repeat=x.shape[1])))
+    points, words = feature_points(np.floor(x).astype(np.int64)[:, None] + offsets, salt)
+    vectors = points - x[:, None]
+    mixed = (words ^ (words >> np.uint32(15))) * np.uint32(grains.SHAPE_SALT)
+    mixed = mixed ^ (mixed >> np.uint32(13))
+    drawn = [((mixed >> np.uint32(8 * byte)) & np.uint32(255)) / 256 for byte in range(3)]
+    thin = [np.ones_like(drawn[0]), *(1 + (elongation - 1) * d for d in drawn[1:])][: x.shape[1]]
+    if x.shape[1] == 2:
+        angle = 2 * np.pi * (words >> np.uint32(24)) / 256
+        turn = np.stack([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]).transpose(2, 3, 0, 1)
+    else:
+        parts = [((words >> np.uint32(8 * byte)) & np.uint32(255)) / 256 - (0.5 - 1 / 512) for byte in range(4)]
+        quaternion = np.stack([*parts[1:], parts[0]], -1).reshape(-1, 4)
+        turn = Rotation.from_quat(quaternion).as_matrix().reshape(*words.shape, 3, 3)
+    w = np.einsum("nkij,nkj->nki", turn, vectors) * np.stack(thin, -1)
+    sizes = np.abs(w)
+    angular = math.hypot(1.0, 0.5) * np.maximum(sizes.max(-1), sizes.sum(-1) / 1.5)
+    gauge = (1 - facets) * np.linalg.norm(w, axis=-1) + facets * angular
+    share = gauge / (grains.GRAIN_RADIUS[x.shape[1]] * (1 - spread * drawn[0]))
+    height = 1 - share ** (2 if rounded else 1)
+    top = height.argmax(1)
+    rows = np.arange(len(x))
+    return np.maximum(height[rows, top], 0.0), words[rows, top]
+
+
 def moments(
     dims: int, first: int, last: int, phi: float, theta: float, gaussian: bool
 ) -> tuple[float, float]:
@@ -120,6 +150,7 @@ def relief(
     anisotropy: float,
     angle: float,
     lacunarity: float,
+    gain: float,
     stripe_frequency: float,
     stripe_spread: float,
     curve: Floats,
@@ -133,11 +164,12 @@ def relief(
     if dims == 3:
         x = x @ TURN.T
     mean, deviation = moments(dims, first, last, stripe_frequency, stripe_spread, gaussian)
-    weights = lacunarity ** -np.arange(octaves, dtype=np.float64)
+    frequencies = lacunarity ** np.arange(octaves, dtype=np.float64)
+    weights = gain ** np.arange(octaves) / frequencies
     total = sum(
         w
-        * single_octave(x / w, first, last, seed + i * OCTAVE_SALT, stripe_frequency, stripe_spread, gaussian)
-        for i, w in enumerate(weights)
+        * single_octave(x * f, first, last, seed + i * OCTAVE_SALT, stripe_frequency, stripe_spread, gaussian)
+        for i, (w, f) in enumerate(zip(weights, frequencies, strict=True))
     )
     z = (total - mean * weights.sum()) / (ETA * deviation * np.sqrt((weights**2).sum()))
     return np.interp(z / np.sqrt(1 + z**2), np.linspace(-1, 1, len(curve)), curve)

@@ -24,6 +24,7 @@ PARAMETERS = {
     "anisotropy": 1.4,
     "angle": 0.6,
     "lacunarity": 1.9,
+    "gain": 0.8,
     "stripe_frequency": 1.7,
     "stripe_spread": 2.2,
     "curve": np.array([0.0, 0.05, 0.2, 0.1, 0.4, 0.5, 0.7, 0.65, 0.9, 0.95, 1.0]),
@@ -48,7 +49,7 @@ def relief_of(
     values = {name: dr.opaque(float_type, v) for name, v in PARAMETERS.items() if name != "curve"}
     values["curve"] = float_type(PARAMETERS["curve"])
     values |= {name: float_type(v) for name, v in changed.items()}
-    return relief_function(columns(x, float_type), settings, dr.opaque(mi.UInt32, seed), **values)
+    return relief_function(columns(x, float_type), settings, dr.opaque(mi.UInt32, seed), **values)[0]
 
 
 @pytest.mark.parametrize("dims", [2, 3])

@@ -14,7 +14,7 @@ mi: ModuleType = mitsuba()  # before Dr.Jit is imported, which would pick an LLV
 import drjit as dr  # noqa: E402
 from drjit.llvm.ad import Float64  # noqa: E402
 
-from voldetail.noise import NoiseSettings, feature_point, relief_function, single_octave  # noqa: E402
+from voldetail.noise import GrainShape, NoiseSettings, feature_point, relief_function, single_octave  # noqa: E402
 
 COUNT = 200
 STEP = 1e-6
@@ -23,15 +23,20 @@ VALUES = {
     "anisotropy": 1.4,
     "angle": 0.6,
     "lacunarity": 1.9,
+    "gain": 0.8,
+    "facets": 0.6,
+    "elongation": 1.7,
+    "size_spread": 0.4,
     "stripe_frequency": 1.7,
     "stripe_spread": 2.2,
 }
 CURVE = np.array([0.0, 0.05, 0.2, 0.1, 0.4, 0.5, 0.7, 0.65, 0.9, 0.95, 1.0])
 POINTS = np.random.default_rng(11).uniform(-2, 2, (3, COUNT))
 MIX = np.random.default_rng(12).normal(size=COUNT)  # the output is reduced with these for the reverse mode
-Case = tuple[int, int, int, int, bool]  # dimensions, k, k', octaves, round envelope
+STONES = ("facets", "elongation", "size_spread")
+Case = tuple[int, int, int, int, bool, bool]  # dimensions, k, k', octaves, round envelope, stones
 # Two octaves where the kernels compile quickly; the others are unrolled over four points.
-CASES: list[Case] = [(3, 1, 50, 2, True), (2, 2, 3, 1, False), (3, 1, 2, 1, False)]
+CASES: list[Case] = [(3, 1, 50, 2, True, False), (2, 2, 3, 1, False, False), (3, 1, 2, 1, False, False), (3, 1, 50, 2, False, True)]
 NAMES = [*VALUES, "x", "y", "z", "curve 3", "curve 5", "curve 8"]
 
 
@@ -41,15 +46,16 @@ def offsets_of(float_type: Any, **steps: float) -> dict[str, Any]:
 
 def relief(case: Case, offsets: dict[str, Any], **changed: float) -> Any:
     """R at POINTS with an offset added to all it depends on, so that every derivative shares a kernel."""
-    dims, first, last, octaves, gaussian = case
+    dims, first, last, octaves, gaussian, stones = case
     float_type: Any = type(offsets["x"])
     values = {key: dr.opaque(float_type, v) + offsets[key] for key, v in (VALUES | changed).items()}
+    shape = GrainShape(*(values.pop(name) for name in STONES))
     points = tuple(float_type(POINTS[axis]) + offsets["xyz"[axis]] for axis in range(dims))
     curve = float_type(CURVE)
     for name in NAMES[-3:]:
         curve = curve + offsets[name] * float_type(np.eye(11)[int(name.split()[1])])
-    settings = NoiseSettings.from_ranks(dims, first, last, octaves, gaussian)
-    return relief_function(points, settings, mi.UInt32(5), curve=curve, **values)
+    settings = NoiseSettings.from_ranks(dims, first, last, octaves, gaussian, highest=stones)
+    return relief_function(points, settings, mi.UInt32(5), curve=curve, shape=shape, **values)[0]
 
 
 def difference(case: Case, name: str) -> np.ndarray:
@@ -77,12 +83,15 @@ def reverse(case: Case, float_type: Any = Float64) -> dict[str, float]:
 
 
 def tolerance(name: str) -> float:
-    # The moments' slope in phi and theta is itself a difference quotient, of step 0.01 (noise.moments).
-    return 2e-3 if name.startswith("stripe") else 1e-5
+    # The moments' slope in phi and theta, and in the stones' numbers, is itself a difference quotient, of step 0.01 (noise.moments).
+    return 2e-3 if name.startswith("stripe") or name in STONES else 1e-5
 
 
 def has(case: Case, name: str) -> bool:
-    return not (name == "z" and case[0] == 2) and not (name == "lacunarity" and case[3] == 1)
+    dims, _, _, octaves, _, stones = case
+    if name in STONES:
+        return stones
+    return not (name == "z" and dims == 2) and not (name in ("lacunarity", "gain") and octaves == 1)
 
 
 @pytest.mark.parametrize(

@@ -45,7 +45,7 @@ def argument(points: tuple[Any, ...], settings: NoiseSettings, seed: int = 1, **
     """The argument t of H, from R with the straight curve."""
     values = {name: dr.opaque(mi.Float, value) for name, value in (PLAIN | changed).items()}
     curve = mi.Float(np.linspace(0, 1, 11))
-    r = relief_function(points, settings, dr.opaque(mi.UInt32, seed), curve=curve, **values)
+    r, _ = relief_function(points, settings, dr.opaque(mi.UInt32, seed), curve=curve, **values)
     return 2 * r.numpy().astype(np.float64) - 1
 
 

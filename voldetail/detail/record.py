@@ -52,6 +52,7 @@ class NoiseParameters(Record):
     envelope: Literal["exponential", "gaussian"] = declared("noise.envelope")
     octaves: int = declared("noise.octaves")
     lacunarity: float = declared("noise.lacunarity")
+    gain: float = declared("noise.gain")
     stripe_frequency: float = declared("noise.stripe_frequency")
     stripe_spread: float = declared("noise.stripe_spread")
     scale: float = declared("noise.scale")
@@ -87,6 +88,8 @@ class Reflectance(Record):
     shininess: float = declared("reflectance.shininess")
     height_albedo: float = declared("reflectance.height_albedo")
     cell_albedo: float = declared("reflectance.cell_albedo")
+    speckle: float = declared("reflectance.speckle")
+    speckle_scale: float = declared("reflectance.speckle_scale")
     tint: tuple[Annotated[float, limits("reflectance.tint")], ...] = declared("reflectance.tint")
 
     @field_validator("tint")

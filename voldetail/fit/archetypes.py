@@ -20,6 +20,14 @@ STEEP = {"shape.1": -1.0}
 """Steep in the middle: two levels."""
 
 ARCHETYPES: tuple[tuple[str, Kind, dict[str, float]], ...] = (
+    ("stones", Kind(1, 50, "exponential", 1, False, pigment=True, stones=True),
+     {"noise.facets": 1.0, "noise.elongation": 1.8, "noise.size_spread": 0.4, "reflectance.cell_albedo": 0.2,
+      "reflectance.height_albedo": 0.2}),
+    ("rough stones", Kind(1, 50, "gaussian", 2, False, pigment=True, stones=True),
+     RISING | {"noise.facets": 0.8, "noise.elongation": 2.0, "noise.size_spread": 0.5, "noise.lacunarity": 3.5,
+               "stone_gain": 0.2, "reflectance.cell_albedo": 0.2, "reflectance.height_albedo": 0.2}),
+    ("lumps", Kind(1, 50, "gaussian", 2, False, stones=True),
+     {"noise.facets": 0.2, "noise.elongation": 1.5, "noise.size_spread": 0.6, "noise.lacunarity": 3.0, "stone_gain": 0.3}),
     ("pebbles", Kind(1, 2, "gaussian", 1, False, grains=True, pigment=True),
      RISING | {"reflectance.cell_albedo": 0.25, "reflectance.height_albedo": 0.3}),
     ("gravel", Kind(1, 2, "exponential", 2, True, grains=True, pigment=True),
@@ -56,8 +64,8 @@ def archetypes(space: Space, anisotropy: tuple[float, float]) -> list[Candidate]
         scale = float(np.exp(low + (high - low) * (0.3 + 0.6 * step / (SCALES - 1))))
         # The light alone makes relief look stretched; half of the spectrum's stretch is taken for the relief's own.
         values = {
-            "noise.scale": scale, "roughness": rough, "noise.anisotropy": factor**-0.5, "noise.angle": angle,
-            "shape.0": 0.0, "shape.1": 0.0, "shape.2": 0.0,
+            "noise.scale": scale, "roughness": rough, "stone_height": 2.0 * rough, "noise.gain": 1.0, "noise.anisotropy": factor**-0.5, "noise.angle": angle,
+            "reflectance.speckle": 0.2, "reflectance.speckle_scale": space.finest, "shape.0": 0.0, "shape.1": 0.0, "shape.2": 0.0,
         } | numbers
         out.append(Candidate(kind, space.encode(kind, values)))
     return out

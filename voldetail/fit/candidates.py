@@ -25,10 +25,11 @@ class Candidate:
 
 
 CHARACTERS = (
-    (False, "none", False), (True, "none", False), (False, "ridge", False), (False, "billow", False),
-    (False, "none", True), (True, "none", True),
+    (False, "none", False, False), (True, "none", False, False), (False, "ridge", False, False),
+    (False, "billow", False, False), (False, "none", True, False), (True, "none", True, False),
+    (False, "none", False, True),
 )
-"""Stripes, fold of H and grains that go together; each is a look of its own, and their products only multiply choices.
+"""Stripes, fold of H, grains and stones that go together; each is a look of its own, and their products only multiply choices.
 The first two are GD10's."""
 
 
@@ -39,22 +40,22 @@ def sampled(
 
     ``anisotropy`` is (factor, angle) of the photo's own spectrum; half of the candidates start from it and half from
     round cells, since the light alone makes any relief look stretched across it. ``extended`` allows what goes beyond
-    GD10: folded H, grains and pigment.
+    GD10: folded H, grains, stones and pigment.
     """
     families = [
         (ranks, character)
         for ranks, character in itertools.product(PAPER_NEIGHBOURS, CHARACTERS if extended else CHARACTERS[:2])
-        if not character[2] or ranks == (1, 2)
+        if not (character[2] and ranks != (1, 2)) and not (character[3] and ranks != (1, 50))
     ]
-    generator = qmc.Sobol(d=11, scramble=True, seed=np.random.default_rng(seed))
+    generator = qmc.Sobol(d=14, scramble=True, seed=np.random.default_rng(seed))
     points = generator.random_base2(math.ceil(math.log2(max(count, 2))))[:count]
     factor, angle = anisotropy
     out = []
     for index, point in enumerate(points):
-        (first, last), (striped, fold, grains) = families[index % len(families)]
+        (first, last), (striped, fold, grains, stones) = families[index % len(families)]
         kind = Kind(
             first, last, "gaussian" if point[8] < 0.5 else "exponential", 1 + int(point[9] * 3), striped, fold, grains,
-            extended and point[10] < 0.5,
+            extended and point[10] < 0.5, stones,
         )
         low, high = space.scale
         rough_low, rough_high = space.roughness
@@ -66,8 +67,13 @@ def sampled(
             "noise.anisotropy": 1.0 / factor if stretched else 1.0,
             "noise.angle": angle if stretched else math.pi * float(point[2]),
             "noise.lacunarity": 1.5 + 1.5 * float(point[4]),
+            "reflectance.speckle": 0.4 * float(point[13]),
+            "reflectance.speckle_scale": space.finest * 0.25 ** float(point[12]),
+            "stone_height": 0.5 + float(point[1]), "noise.gain": 1.0, "stone_gain": 0.05 * 8.0 ** float(point[9]),
             "noise.stripe_frequency": 0.5 * 6.0 ** float(point[5]),
             "reflectance.height_albedo": 0.3 * float(point[6]), "reflectance.cell_albedo": 0.4 * float(point[7]),
+            "noise.facets": float(point[11]), "noise.elongation": 1.0 + 2.0 * float(point[12]),
+            "noise.size_spread": 0.7 * float(point[13]),
             "noise.stripe_spread": math.pi * (1.0 if point[6] < 0.5 else float(point[7])),
         } | {f"shape.{i}": float(v) for i, v in enumerate(shape_of(shape))}
         out.append(Candidate(kind, space.encode(kind, values)))
@@ -106,7 +112,7 @@ def paper_grid(space: Space, anisotropy: tuple[float, float]) -> list[Candidate]
 
 
 def best_distinct(candidates: list[Candidate], count: int) -> list[Candidate]:
-    """Return the ``count`` best candidates of different families: ranks, stripes, fold and grains; the best first."""
+    """Return the ``count`` best candidates of different families: ranks, stripes, fold, grains and stones; the best first."""
     chosen: list[Candidate] = []
     seen = set()
     for candidate in sorted(candidates, key=lambda c: c.value):

@@ -117,7 +117,7 @@ def space_of(setup: Setup, target: Target) -> Space:
         )
     return Space(
         domain=setup.domain, scale=(coarsest, finest), finest=1.0 / (FINEST_OCTAVE * view.pixel),
-        amplitude=setup.amplitude,
+        amplitude=setup.amplitude, plain=setup.fit.solver == "paper",
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +14,7 @@ from voldetail.errors import InputError
 from voldetail.fit.reflectance import solve
 from voldetail.fit.target import Target
 from voldetail.metric import Descriptor, describe, distance
-from voldetail.render import SHININESS, components
+from voldetail.render import SHININESS, Components, components
 from voldetail.scene.heightfield import HeightField
 from voldetail.scene.surface import MeshSurface
 
@@ -42,11 +44,32 @@ class Objective:
 
     def evaluate(self, detail: Detail, seed: int | None = None) -> Evaluation:
         """Return the Evaluation of ``detail``, under another noise ``seed`` if given."""
+        return self._compared(*self._looked_at(detail, seed))
+
+    def evaluate_all(self, details: Iterable[Detail], seed: int) -> Iterator[Evaluation]:
+        """Yield the Evaluation of each of ``details`` under one ``seed``, in order.
+
+        While one is compared, by NumPy in one thread, the next is looked at, by Dr.Jit in all: a third of the time less
+        on two cores.
+        """
+        with ThreadPoolExecutor(1) as worker:
+            waiting: Future[Evaluation] | None = None
+            for detail in details:
+                seen = self._looked_at(detail, seed)
+                if waiting is not None:
+                    yield waiting.result()
+                waiting = worker.submit(self._compared, *seen)
+            if waiting is not None:
+                yield waiting.result()
+
+    def _looked_at(self, detail: Detail, seed: int | None) -> tuple[Detail, Components]:
         self.evaluations += 1
         if seed is not None:
             detail = detail.model_copy(update={"seed": seed})
         self.surface.update(detail)
-        parts = components(self.surface, self.target.lamp, subsamples=self.subsamples, shininess=SHININESS)
+        return detail, components(self.surface, self.target.lamp, subsamples=self.subsamples, shininess=SHININESS)
+
+    def _compared(self, detail: Detail, parts: Components) -> Evaluation:
         mask = self.target.mask & (parts.covered > 0.999)
         if not mask.any():
             return Evaluation(detail, UNUSABLE, np.zeros_like(self.target.luminance), mask)

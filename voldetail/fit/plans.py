@@ -132,8 +132,8 @@ def paper_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
 def _compare(session: Session, candidates: list[Candidate]) -> None:
     """Fill the pool with ``candidates`` and their values at half resolution, one by one: an interruption keeps them."""
     session.pool = []
-    for candidate in candidates:
-        value = session.value(session.coarse, candidate.kind, candidate.vector, session.noise_seed(0))
+    values = session.values(session.coarse, [(c.kind, c.vector) for c in candidates], session.noise_seed(0))
+    for candidate, value in zip(candidates, values, strict=True):
         session.pool.append(replace(candidate, value=value))
 
 

@@ -22,8 +22,8 @@ RANKS = 24
 STEPS = 3
 """Re-sorting steps; the fourth changes coefficients by less than a percent."""
 
-SAMPLES = 9000
-"""Pixels used at most: enough for 24 groups of some 400."""
+SAMPLES = 4608
+"""Pixels used at most: enough for 24 groups of some 200."""
 
 ACTIVE_SET_STEPS = 12
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from voldetail.detail import Detail
 from voldetail.fit.candidates import Candidate
 from voldetail.fit.objective import Evaluation, Objective
 from voldetail.fit.search import CMAES, Solution, Solver, minimise
@@ -117,18 +118,27 @@ class Session:
 
     def value(self, objective: Objective, kind: Kind, vector: Vector, seed: int) -> float:
         """Return the distance at one vector times the handicap of its kind; keeps the best full-resolution picture."""
-        self.check()
-        evaluation = objective.evaluate(self.space.decode(kind, vector), seed)
-        value = evaluation.distance * kind.handicap
-        if self.first is None or value < self.first.value:
-            self.first = Candidate(kind, vector, value)
-        if objective is self.fine and (self.best is None or evaluation.distance < self.best.distance):
-            self.best = evaluation
-            if evaluation.distance < self.best_value:
-                self.best_value = evaluation.distance
-                self.trace.append((self.evaluations, evaluation.distance))
-        self._report()
-        return value
+        return next(self.values(objective, [(kind, vector)], seed))
+
+    def values(self, objective: Objective, places: Sequence[tuple[Kind, Vector]], seed: int) -> Iterator[float]:
+        """Yield the `value` at each of ``places`` under one seed, in order."""
+
+        def details() -> Iterator[Detail]:
+            for kind, vector in places:
+                self.check()
+                yield self.space.decode(kind, vector)
+
+        for (kind, vector), evaluation in zip(places, objective.evaluate_all(details(), seed), strict=True):
+            value = evaluation.distance * kind.handicap
+            if self.first is None or value < self.first.value:
+                self.first = Candidate(kind, vector, value)
+            if objective is self.fine and (self.best is None or evaluation.distance < self.best.distance):
+                self.best = evaluation
+                if evaluation.distance < self.best_value:
+                    self.best_value = evaluation.distance
+                    self.trace.append((self.evaluations, evaluation.distance))
+            self._report()
+            yield value
 
     def _report(self) -> None:
         now = time.monotonic()
@@ -161,7 +171,7 @@ class Session:
         def evaluate(vectors: Sequence[Vector], step: int) -> list[float]:
             # Common random numbers within a step: candidates differ by their parameters alone.
             seed = self.noise_seed(candidate.spent + step)
-            return [self.value(objective, kind, vector, seed) for vector in vectors]
+            return list(self.values(objective, [(kind, vector) for vector in vectors], seed))
 
         spread = candidate.spread
 

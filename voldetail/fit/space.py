@@ -24,24 +24,48 @@ SHAPE_RANGE = 1.5
 
 GRAINS = (1.0, -1.0, 1.0)
 
-HEIGHT_ALBEDO = (-0.2, 0.6)
-CELL_ALBEDO = (0.0, 0.6)
-"""Ranges that are searched: dust and moss sit in hollows more often than on tops; tuned on gravel and grass."""
+HEIGHT_ALBEDO = (-0.1, 0.35)
+CELL_ALBEDO = (0.0, 0.35)
+"""Ranges that are searched: dust and moss sit in hollows more often than on tops. Wider ones let the search paint flat
+ground instead of raising it; tuned on gravel and grass."""
+
+SPECKLE = (0.0, 0.5)
+FINEST_SPECKS = 4.0
+"""Strength of the specks, and how much coarser than the finest octave they may be."""
+
+PIGMENT = ("height_albedo", "cell_albedo", "speckle", "speckle_scale")
+
+STONE_HEIGHT = (0.4, 1.6)
+"""Range of the amplitude in cells where stones are searched: they are about as high as wide, never a flat mosaic."""
+
+ELONGATION = (1.0, 2.2)
+SIZE_SPREAD = (0.0, 0.55)
+"""Ranges that leave hardly any ground between stones (see noise.grains)."""
+
+GAIN = (0.05, 1.5)
+STONE_GAIN = (0.05, 0.4)
+"""Ranges of the octaves' gain; rougher stones lose their outlines and look like cauliflower."""
 
 FOLD_HANDICAP = 1.2
+STRIPED_CELLS_HANDICAP = 1.15
+STONES_HANDICAP = 0.95
 PIGMENT_HANDICAP = 1.05
-"""A folded H fits much and looks like little in nature; two more numbers for pigment fit a few percent by themselves.
-Tuned by eye on gravel, roughcast, bark and sand."""
+"""Factors on the distance by how often a family looks like nature where it scores like nature. A folded H, and stripes
+within single cells, fit much and look like little; stones look right where they are only almost as near; more numbers
+for pigment fit a few percent by themselves. Tuned by eye on gravel, roughcast, bark and sand."""
+
+LOGARITHMIC = ("roughness", "stone_height", "stone_gain", "noise.stripe_frequency")
+"""Numbers searched on a logarithmic scale though they are no parameter of a detail, or one that is declared linear."""
 
 FOLDS = ("none", "ridge", "billow")
 
 
 @dataclass(frozen=True)
 class Kind:
-    """What is discrete: ranks of feature points, envelope, octaves, whether there are stripes, and how H is folded.
+    """What is discrete: ranks of feature points, envelope, octaves, whether there are stripes, how H is folded.
 
-    grains: the second point counts against the first, so that the noise vanishes on the border of cells. pigment:
-    albedo varies with height and from grain to grain. fold: "none" keeps H monotone; "ridge" is 1 - |2H - 1| of a
+    grains: the second point counts against the first, so that the noise vanishes on the border of cells. stones: the
+    highest kernel alone counts, each a body of its own shape. pigment: albedo varies with height, from grain to grain and by specks. fold: "none" keeps H monotone; "ridge" is 1 - |2H - 1| of a
     monotone H, "billow" |2H - 1|.
     """
 
@@ -53,11 +77,19 @@ class Kind:
     fold: str = "none"
     grains: bool = False
     pigment: bool = False
+    stones: bool = False
 
     @property
     def handicap(self) -> float:
-        """Factor on the distance by which what goes beyond GD10 has to pay for itself."""
-        return (FOLD_HANDICAP if self.fold != "none" else 1.0) * (PIGMENT_HANDICAP if self.pigment else 1.0)
+        """Factor on the distance by which what goes beyond GD10, or seldom looks like nature, has to pay for itself."""
+        return math.prod(
+            factor
+            for applies, factor in (
+                (self.fold != "none", FOLD_HANDICAP), (self.striped and (self.first, self.last) != (1, 50), STRIPED_CELLS_HANDICAP),
+                (self.stones, STONES_HANDICAP), (self.pigment, PIGMENT_HANDICAP),
+            )
+            if applies
+        )
 
 
 @dataclass(frozen=True)
@@ -67,7 +99,7 @@ class Space:
     domain: of the noise. scale: bounds of the cells per scene unit that the picture can show. finest: cells per scene
     unit above which an octave would be finer than the pixels. amplitude: the user's, or None if it is searched.
     anisotropy, roughness, stripes: bounds; roughness is the amplitude in cells, A_d s, which is better conditioned than
-    A_d: the slopes of the relief, and so its shading, go with it.
+    A_d: the slopes of the relief, and so its shading, go with it. plain: GD10's own numbers only.
     """
 
     domain: str
@@ -77,18 +109,25 @@ class Space:
     roughness: tuple[float, float] = (0.05, 0.7)
     anisotropy: tuple[float, float] = (0.2, 5.0)
     stripes: tuple[float, float] = (0.2, 4.0)
+    plain: bool = False
 
     def names(self, kind: Kind) -> list[str]:
         """Return the names of the numbers of ``kind``, in order."""
         out = ["noise.scale", "noise.anisotropy", "noise.angle"]
         if self.amplitude is None:
-            out.append("roughness")
+            out.append("stone_height" if kind.stones else "roughness")
         if kind.octaves > 1:
             out.append("noise.lacunarity")
+            if not self.plain:
+                out.append("stone_gain" if kind.stones else "noise.gain")
+        if kind.stones:
+            out += ["noise.facets", "noise.elongation", "noise.size_spread"]
         if kind.striped:
             out += ["noise.stripe_frequency", "noise.stripe_spread"]
         if kind.pigment:
-            out += ["reflectance.height_albedo", "reflectance.cell_albedo"]
+            out += [f"reflectance.{name}" for name in PIGMENT]
+        if kind.stones:
+            return [*out, "stone_profile"]
         return out + [f"shape.{i}" for i in range(SHAPE_COUNT)]
 
     def range_of(self, name: str) -> tuple[float, float, bool]:
@@ -96,12 +135,15 @@ class Space:
         if name.startswith("shape."):
             return -SHAPE_RANGE, SHAPE_RANGE, False
         own = {
-            "noise.scale": self.scale, "roughness": self.roughness, "noise.anisotropy": self.anisotropy,
+            "noise.scale": self.scale, "roughness": self.roughness, "stone_height": STONE_HEIGHT,
+            "stone_profile": (0.0, SHAPE_RANGE), "noise.gain": GAIN, "stone_gain": STONE_GAIN,
+            "noise.elongation": ELONGATION, "noise.size_spread": SIZE_SPREAD, "noise.anisotropy": self.anisotropy,
             "noise.stripe_frequency": self.stripes, "reflectance.height_albedo": HEIGHT_ALBEDO,
-            "reflectance.cell_albedo": CELL_ALBEDO,
+            "reflectance.cell_albedo": CELL_ALBEDO, "reflectance.speckle": SPECKLE,
+            "reflectance.speckle_scale": (self.finest / FINEST_SPECKS, self.finest),
         }.get(name)
         low, high = own or bounds(name)
-        return low, high, name in ("roughness", "noise.stripe_frequency") or parameter(name).scale == "log"
+        return low, high, name in LOGARITHMIC or (name.startswith("noise.") and parameter(name).scale == "log")
 
     def decode(self, kind: Kind, vector: Vector) -> Detail:
         """Return the Detail at ``vector`` (each number in [0, 1]; angles wrap, the rest is clipped)."""
@@ -110,24 +152,25 @@ class Space:
             low, high, log = self.range_of(name)
             unit = unit % 1.0 if name == "noise.angle" else min(max(float(unit), 0.0), 1.0)
             values[name] = low * (high / low) ** unit if log else low + unit * (high - low)
-        shape = np.array([values[f"shape.{i}"] for i in range(SHAPE_COUNT)])
+        shape = np.array([values.get(f"shape.{i}", 0.0) for i in range(SHAPE_COUNT)])
+        if kind.stones:
+            shape[0] = values["stone_profile"]
         lacunarity = values.get("noise.lacunarity", parameter("noise.lacunarity").default)
         shown = 1 + int(max(0.0, math.log(self.finest / values["noise.scale"]) / math.log(lacunarity)))
         noise = NoiseParameters(
             domain=self.domain, first_neighbour=kind.first, last_neighbour=kind.last, envelope=kind.envelope,  # type: ignore[arg-type]
-            weights=GRAINS if kind.grains else (1.0, 1.0, 1.0), octaves=min(kind.octaves, shown), lacunarity=lacunarity,
-            stripe_frequency=values.get("noise.stripe_frequency", 0.0),
+            weights=GRAINS if kind.grains else (1.0, 1.0, 1.0), joining="highest" if kind.stones else "sum",
+            facets=values.get("noise.facets", 0.0), elongation=values.get("noise.elongation", 1.0),
+            size_spread=values.get("noise.size_spread", 0.0), octaves=min(kind.octaves, shown), lacunarity=lacunarity,
+            gain=values.get("noise.gain", values.get("stone_gain", 1.0)), stripe_frequency=values.get("noise.stripe_frequency", 0.0),
             stripe_spread=values.get("noise.stripe_spread", 0.0),
             scale=values["noise.scale"], anisotropy=values["noise.anisotropy"], angle=values["noise.angle"],
             curve=tuple(float(v) for v in fold(profile(shape), kind.fold)),
         )
         amplitude = self.amplitude
         if amplitude is None:
-            amplitude = min(values["roughness"] / values["noise.scale"], bounds("relief.amplitude")[1])
-        pigment = Reflectance(
-            height_albedo=values.get("reflectance.height_albedo", 0.0),
-            cell_albedo=values.get("reflectance.cell_albedo", 0.0),
-        )
+            amplitude = min(values["stone_height" if kind.stones else "roughness"] / values["noise.scale"], bounds("relief.amplitude")[1])
+        pigment = Reflectance(**{name: values[f"reflectance.{name}"] for name in PIGMENT if kind.pigment})
         return Detail(noise=noise, relief=ReliefParameters(amplitude=amplitude), reflectance=pigment)
 
     def encode(self, kind: Kind, values: dict[str, float]) -> Vector:

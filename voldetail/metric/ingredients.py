@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from voldetail.metric import jets, magnitudes, marginals, patches, patterns, published, spectrum, tone
+from voldetail.metric import granulometry, jets, magnitudes, marginals, patches, patterns, published, spectrum, swells, tone
 from voldetail.metric.layers import Layers
 
 Array = NDArray[np.float32]
@@ -30,6 +30,8 @@ INGREDIENTS: Mapping[str, Ingredient] = MappingProxyType(
         "magnitudes": magnitudes,
         "patterns": patterns,
         "patches": patches,
+        "granulometry": granulometry,
+        "swells": swells,
         "jets": jets,
         "tone": tone,
     }
@@ -37,12 +39,15 @@ INGREDIENTS: Mapping[str, Ingredient] = MappingProxyType(
 
 COMBINED: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
-        "magnitudes": {"within level 0": 0.14, "space level 0": 0.14, "across level 0": 0.03,
-                       "within level 1": 0.03, "space level 1": 0.06, "across level 1": 0.03},
-        "patterns": {"level 0": 0.06, "level 0 smoothed": 0.14, "level 1": 0.05},
-        "marginals": {"level 0": 0.05, "level 1": 0.02, "level 2": 0.02,
-                      "shape level 0": 0.10, "shape level 1": 0.03},
-        "spectrum": {"level 0": 0.04, "level 1": 0.03, "level 2": 0.03},
+        "magnitudes": {"within level 0": 0.17, "space level 0": 0.06, "across level 0": 0.05,
+                       "within level 1": 0.03, "space level 1": 0.03, "across level 1": 0.03},
+        "patterns": {"level 0": 0.05, "level 0 smoothed": 0.05, "level 1": 0.03},
+        "marginals": {"level 0": 0.04, "level 1": 0.02, "level 2": 0.02,
+                      "shape level 0": 0.08, "shape level 1": 0.02},
+        "spectrum": {"level 0": 0.03, "level 1": 0.02, "level 2": 0.02},
+        "granulometry": {"bright level 0": 0.03, "bright level 1": 0.03, "bright level 2": 0.02,
+                         "dark level 0": 0.06, "dark level 1": 0.04, "dark level 2": 0.02},
+        "swells": {"50 pixels": 0.025, "100 pixels": 0.025},
     }
 )  # fmt: skip
 """Weight of each part of the default metric, adding up to 1. Tuned on the photographs of results/metric (a logistic fit

@@ -1,14 +1,16 @@
 """Cellular-Gabor noise (GD10 eq. 2 and 3) on any Dr.Jit array type; nothing here imports Mitsuba."""
 
-from voldetail.noise.cells import cell_value
+from voldetail.noise.cells import cell_value, number_of, specks
 from voldetail.noise.curve import evaluate_curve
 from voldetail.noise.gabor import relief_function
+from voldetail.noise.grains import GrainShape
 from voldetail.noise.lattice import cell_hash, feature_point, nearest_points, search_table
 from voldetail.noise.moments import moments
 from voldetail.noise.octave import KERNEL_RADIUS, NoiseSettings, single_octave
 
 __all__ = [
     "KERNEL_RADIUS",
+    "GrainShape",
     "NoiseSettings",
     "cell_hash",
     "cell_value",
@@ -16,7 +18,9 @@ __all__ = [
     "feature_point",
     "moments",
     "nearest_points",
+    "number_of",
     "relief_function",
     "search_table",
     "single_octave",
+    "specks",
 ]

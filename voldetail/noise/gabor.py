@@ -1,8 +1,9 @@
 """The relief function R (GD10 eq. 3): octaves of cellular-Gabor noise through the curve H.
 
 Symbols
-    R(x)    H(1/eta sum_i m^-i N(m^i Q S x)), N one octave (noise.octave, eq. 2)
-    m       lacunarity: octave i has frequency m^i and weight m^-i
+    R(x)    H(1/eta sum_i (q/m)^i N(m^i Q S x)), N one octave (noise.octave, eq. 2)
+    m       lacunarity: octave i has frequency m^i and weight (q/m)^i
+    q       gain of each octave over the one before; ours, and 1 in the paper
     S       diag(s f, s, s), Q rotation by `angle` in the surface plane; X = S Q x
     eta     normalisation, chosen here so that the argument of H lies in [-1, 1]
     H       eleven control points (noise.curve)
@@ -21,8 +22,9 @@ from typing import Any
 import drjit as dr
 
 from voldetail.noise.curve import evaluate_curve
+from voldetail.noise.grains import GrainShape
 from voldetail.noise.moments import differentiable_moments
-from voldetail.noise.octave import TURN, NoiseSettings, single_octave
+from voldetail.noise.octave import TURN, NoiseSettings, octave_and_owner
 
 ETA = 1.5
 """Deviations at which the argument of H is 1/sqrt(2); tuned so that all eleven points of H are in use."""
@@ -45,14 +47,14 @@ def relief_function(
     stripe_frequency: Any,
     stripe_spread: Any,
     curve: Any,
-    facets: Any = 0.0,
-    elongation: Any = 1.0,
-    size_spread: Any = 0.0,
-) -> Any:
-    """Return R(x) in [0, 1], eq. 3, at ``points`` (2 or 3 float arrays, scene units).
+    gain: Any = 1.0,
+    shape: GrainShape | None = None,
+) -> tuple[Any, Any | None]:
+    """Return R(x) in [0, 1], eq. 3, at ``points`` (2 or 3 float arrays, scene units), and the hash word of the
+    cell or grain that it belongs to in the coarsest octave, None where all points count.
 
     ``seed`` is a UInt array; ``curve`` a float array of eleven values; the others floats or float arrays of
-    width 1, differentiable. ``facets``, ``elongation`` and ``size_spread`` shape the grains where the highest counts. Keep what
+    width 1, differentiable. ``shape`` is that of the grains where the highest counts. Keep what
     changes opaque (`dr.opaque`), else each value compiles a kernel.
     """
     float_type: Any = type(points[0])
@@ -60,20 +62,26 @@ def relief_function(
     total = dr.zeros(float_type, dr.width(points[0]))
     weight: Any = float_type(1.0)
     frequency: Any = float_type(1.0)
+    owner: Any | None = None
     sum_of_squares: Any = float_type(0.0)
     for octave in range(settings.octaves):
         scaled = tuple(v * frequency for v in x)
         salt = seed + (octave * OCTAVE_SALT & 0xFFFFFFFF)
         own = settings.of_octave(octave)
-        numbers = (facets, elongation, size_spread) if own.highest else (stripe_frequency, stripe_spread)
+        numbers: tuple[Any, ...] = (stripe_frequency, stripe_spread)
+        if own.highest:
+            assert shape is not None, "grains need a shape"
+            numbers = shape.numbers
+        value, found = octave_and_owner(scaled, own, salt, *numbers)
+        owner = found if octave == 0 else owner
         mean, deviation = differentiable_moments(own, float_type, *numbers)
-        total += (weight / deviation) * (single_octave(scaled, own, salt, *numbers) - mean)
+        total += (weight / deviation) * (value - mean)
         sum_of_squares += weight * weight
-        weight = weight / lacunarity
+        weight = weight * (gain / lacunarity)
         frequency = frequency * lacunarity
     z = total / (ETA * dr.sqrt(sum_of_squares))
     # Not dr.rsqrt: its last bits come from the processor's own estimate and differ between machines.
-    return evaluate_curve(curve, z / dr.sqrt(1.0 + z * z), CURVE_POINTS)
+    return evaluate_curve(curve, z / dr.sqrt(1.0 + z * z), CURVE_POINTS), owner
 
 
 def frame(points: tuple[Any, ...], scale: Any, anisotropy: Any, angle: Any) -> tuple[Any, ...]:

@@ -119,12 +119,18 @@ def single_octave(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, *numbe
 
     ``numbers`` are the stripes' frequency phi and spread theta, or the three of a `GrainShape` where the highest counts.
     """
+    return octave_and_owner(x, settings, salt, *numbers)[0]
+
+
+def octave_and_owner(
+    x: tuple[Any, ...], settings: NoiseSettings, salt: Any, *numbers: Any
+) -> tuple[Any, Any | None]:
+    """Return `single_octave` and the hash word of the cell or grain that ``x`` belongs to, None where all points count."""
     if settings.highest:
-        return highest_grain(x, salt, GrainShape(*numbers), settings.gaussian)[0]
-    stripe_frequency, stripe_spread = numbers
+        return highest_grain(x, salt, GrainShape(*numbers), settings.gaussian)
     if settings.everywhere:
-        return _sum_of_all(x, settings, salt, stripe_frequency, stripe_spread)
-    return _sum_of_ranks(x, settings, salt, stripe_frequency, stripe_spread)
+        return _sum_of_all(x, settings, salt, *numbers), None
+    return _sum_of_ranks(x, settings, salt, *numbers)
 
 
 def _sum_of_all(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, phi: Any, theta: Any) -> Any:
@@ -153,7 +159,9 @@ def _sum_of_all(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, phi: Any
     return total
 
 
-def _sum_of_ranks(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, phi: Any, theta: Any) -> Any:
+def _sum_of_ranks(
+    x: tuple[Any, ...], settings: NoiseSettings, salt: Any, phi: Any, theta: Any
+) -> tuple[Any, Any]:
     weights = (*settings.weights, 0.0)
     last = max((i + 1 for i, w in enumerate(weights) if w != 0.0), default=1)
     # The point after the last one is needed only to know where stripes must fade.
@@ -176,7 +184,7 @@ def _sum_of_ranks(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, phi: A
         total += (
             weights[rank] * _envelope(distances[rank], settings.gaussian) * (1.0 + (stripes - 1.0) * fade)
         )
-    return total
+    return total, vectors[0][1]
 
 
 def _squared(vector: tuple[Any, ...]) -> Any:

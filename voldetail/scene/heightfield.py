@@ -16,7 +16,7 @@ import numpy as np
 
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
-from voldetail.scene.relief import albedo_at, relief_at
+from voldetail.scene.relief import relief_and_albedo
 from voldetail.scene.view import View
 
 MARGIN = 16
@@ -62,10 +62,9 @@ class HeightField:
 
     def update(self, detail: Detail) -> None:
         """Compute heights A_d R and vertex normals, and the sky's visibility at the vertices."""
-        relief = relief_at(detail, self.domain)
+        relief, self.albedo = relief_and_albedo(detail, self.domain)
         amplitude = dr.opaque(self.float_type, detail.relief.amplitude)
         self.z = relief * amplitude
-        self.albedo = albedo_at(detail, self.domain, relief)
         dr.eval(self.z, self.albedo)
         # The highest point ends every walk towards the light.
         self.top = dr.max(self.z)

@@ -7,7 +7,7 @@ from typing import Any
 import drjit as dr
 
 from voldetail.detail import Detail
-from voldetail.noise import NoiseSettings, cell_value, relief_function
+from voldetail.noise import GrainShape, NoiseSettings, cell_value, number_of, relief_function, specks
 
 SOLID = "solid"
 
@@ -27,15 +27,47 @@ def relief_at(detail: Detail, domain: tuple[Any, ...], scale: float = 1.0) -> An
 
     ``scale`` makes the detail's cells that many times larger. The value depends on the detail and the seed alone.
     """
+    return _relief(detail, domain, scale)[0]
+
+
+def relief_and_albedo(detail: Detail, domain: tuple[Any, ...], scale: float = 1.0) -> tuple[Any, Any | None]:
+    """Return `relief_at` and the factor (1 + g (2 R - 1)) (1 + v (2 u - 1)) (1 + k t) on the albedo, or None for 1.
+
+    g goes with the height R, v with the grain's own number u in [0, 1), k with specks t in (-1, 1).
+    """
+    relief, owner = _relief(detail, domain, scale)
     float_type: Any = type(domain[0])
-    uint_type = dr.uint32_array_t(float_type)
+    reflectance, points, seed = detail.reflectance, _points(detail, domain), _seed(detail, float_type)
+    patterns = []
+    if reflectance.height_albedo != 0.0:
+        patterns.append((reflectance.height_albedo, 2.0 * relief - 1.0))
+    if reflectance.cell_albedo != 0.0:
+        own = cell_value(points, seed, **_cells(detail, float_type, scale)) if owner is None else number_of(owner, float_type)
+        patterns.append((reflectance.cell_albedo, 2.0 * own - 1.0))
+    if reflectance.speckle != 0.0:
+        size = dr.opaque(float_type, reflectance.speckle_scale / scale)
+        patterns.append((reflectance.speckle, specks(tuple(v * size for v in points), seed)))
+    factor: Any = None
+    for strength, pattern in patterns:
+        one = 1.0 + dr.opaque(float_type, strength) * pattern
+        factor = one if factor is None else factor * one
+    return relief, factor
+
+
+def _relief(detail: Detail, domain: tuple[Any, ...], scale: float) -> tuple[Any, Any | None]:
+    """Return the relief and, where the highest counts, the grain on top."""
+    float_type: Any = type(domain[0])
     noise = detail.noise
-    stripes = _opaque(
-        float_type, lacunarity=noise.lacunarity, stripe_frequency=noise.stripe_frequency, stripe_spread=noise.stripe_spread
+    shape = None
+    if noise.joining == "highest":
+        shape = GrainShape(*_opaque(float_type, b=noise.facets, e=noise.elongation, s=noise.size_spread).values())
+    octaves = _opaque(
+        float_type, lacunarity=noise.lacunarity, gain=noise.gain, stripe_frequency=noise.stripe_frequency,
+        stripe_spread=noise.stripe_spread,
     )
     return relief_function(
-        _points(detail, domain), settings_of(detail), dr.opaque(uint_type, detail.seed & 0xFFFFFFFF),
-        **_cells(detail, float_type, scale), **stripes, curve=float_type(list(noise.curve)),
+        _points(detail, domain), settings_of(detail), _seed(detail, float_type), **_cells(detail, float_type, scale),
+        **octaves, curve=float_type(list(noise.curve)), shape=shape,
     )
 
 
@@ -43,37 +75,15 @@ def _points(detail: Detail, domain: tuple[Any, ...]) -> tuple[Any, ...]:
     return tuple(domain[: 3 if detail.noise.domain == SOLID else 2])
 
 
+def _seed(detail: Detail, float_type: Any) -> Any:
+    return dr.opaque(dr.uint32_array_t(float_type), detail.seed & 0xFFFFFFFF)
+
+
 def _cells(detail: Detail, float_type: Any, scale: float) -> dict[str, Any]:
-    """Return the numbers that say where the cells are and what shape grains have."""
     noise = detail.noise
-    shape = {"facets": noise.facets, "elongation": noise.elongation, "size_spread": noise.size_spread}
-    return _opaque(
-        float_type, scale=noise.scale / scale, anisotropy=noise.anisotropy, angle=noise.angle,
-        **(shape if noise.joining == "highest" else {}),
-    )
+    return _opaque(float_type, scale=noise.scale / scale, anisotropy=noise.anisotropy, angle=noise.angle)
 
 
 def _opaque(float_type: Any, **numbers: float) -> dict[str, Any]:
     # These numbers change at every evaluation of a fit and must not become code.
     return {name: dr.opaque(float_type, float(value)) for name, value in numbers.items()}
-
-
-def albedo_at(detail: Detail, domain: tuple[Any, ...], relief: Any, scale: float = 1.0) -> Any | None:
-    """Return the factor (1 + g (2 R - 1)) (1 + v (2 u - 1)) on the albedo, or None where it is 1 everywhere.
-
-    g goes with the height R, v with the grain's own number u in [0, 1).
-    """
-    float_type: Any = type(domain[0])
-    reflectance = detail.reflectance
-    factor: Any = None
-    if reflectance.height_albedo != 0.0:
-        factor = 1.0 + dr.opaque(float_type, reflectance.height_albedo) * (2.0 * relief - 1.0)
-    if reflectance.cell_albedo != 0.0:
-        uint_type = dr.uint32_array_t(float_type)
-        own = cell_value(
-            _points(detail, domain), settings_of(detail), dr.opaque(uint_type, detail.seed & 0xFFFFFFFF),
-            **_cells(detail, float_type, scale),
-        )
-        grain = 1.0 + dr.opaque(float_type, reflectance.cell_albedo) * (2.0 * own - 1.0)
-        factor = grain if factor is None else factor * grain
-    return factor

@@ -11,7 +11,7 @@ import numpy as np
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
 from voldetail.scene.proxy import Proxy
-from voldetail.scene.relief import albedo_at, relief_at
+from voldetail.scene.relief import relief_and_albedo
 from voldetail.scene.view import View
 
 SKY_RAYS = 32
@@ -45,9 +45,8 @@ class MeshSurface:
     def update(self, detail: Detail) -> None:
         """Displace the mesh by the relief of ``detail``."""
         mi = mitsuba()
-        relief = relief_at(detail, self._domain, self.scale)
+        relief, self.albedo = relief_and_albedo(detail, self._domain, self.scale)
         height = relief * dr.opaque(mi.Float, detail.relief.amplitude * self.scale)
-        self.albedo = albedo_at(detail, self._domain, relief, self.scale)
         positions = dr.ravel(self._positions + height * self._normals)
         # Left unevaluated, the noise would be computed again by each consumer of the vertices.
         dr.eval(positions, self.albedo)
