@@ -127,8 +127,12 @@ def _session(
 ) -> tuple[Session, tuple[Stage, ...]]:
     planner = paper_plan if setup.fit.solver == "paper" else default_plan
     plan = planner(anisotropy(target.luminance, target.mask), setup.fit.evaluations)
-    fine = Objective(target, build(setup, target.shape, target.zone), specular=setup.fit.specular)
     coarse = _coarse(setup, target)
+    both = setup.fit.solver != "paper" and coarse.target is not target
+    fine = Objective(
+        target, build(setup, target.shape, target.zone), specular=setup.fit.specular,
+        reduced=coarse.target if both else None,
+    )
     # The budget that the user named is a limit; the plan's own is an estimate with room for rounding.
     planned = setup.fit.evaluations or plan.evaluations
     session = Session(
@@ -162,9 +166,9 @@ def _finish(session: Session) -> Evaluation:
         rounded(session.space.decode(c.kind, c.vector)) for c in sorted(finite, key=lambda c: c.value)[:FINALISTS]
     ]
     if session.stage < session.stages:
-        details.sort(key=lambda d: session.fine.evaluate(d, session.unseen_seed(0)).distance)
+        details.sort(key=lambda d: session.fine.evaluate(d, session.unseen_seed(0)).score)
     seeds = (derived_seed(session.root_seed, f"detail/{index}") for index in range(DETAIL_SEEDS))
-    return min((session.fine.evaluate(details[0], seed) for seed in seeds), key=lambda e: e.distance)
+    return min((session.fine.evaluate(details[0], seed) for seed in seeds), key=lambda e: e.score)
 
 
 def _sign(setup: Setup, target: Target, session: Session, final: Evaluation, status: str) -> Detail:

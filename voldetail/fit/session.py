@@ -117,7 +117,7 @@ class Session:
             raise Stopped("the time limit was reached")
 
     def value(self, objective: Objective, kind: Kind, vector: Vector, seed: int) -> float:
-        """Return the distance at one vector times the handicap of its kind; keeps the best full-resolution picture."""
+        """Return the score at one vector times the handicap of its kind; keeps the best full-resolution picture."""
         return next(self.values(objective, [(kind, vector)], seed))
 
     def values(self, objective: Objective, places: Sequence[tuple[Kind, Vector]], seed: int) -> Iterator[float]:
@@ -129,11 +129,12 @@ class Session:
                 yield self.space.decode(kind, vector)
 
         for (kind, vector), evaluation in zip(places, objective.evaluate_all(details(), seed), strict=True):
-            value = evaluation.distance * kind.handicap
+            value = evaluation.score * kind.handicap
             if self.first is None or value < self.first.value:
                 self.first = Candidate(kind, vector, value)
-            if objective is self.fine and (self.best is None or evaluation.distance < self.best.distance):
-                self.best = evaluation
+            if objective is self.fine:
+                if self.best is None or evaluation.score < self.best.score:
+                    self.best = evaluation
                 if evaluation.distance < self.best_value:
                     self.best_value = evaluation.distance
                     self.trace.append((self.evaluations, evaluation.distance))
