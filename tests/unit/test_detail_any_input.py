@@ -68,7 +68,7 @@ def details(draw: st.DrawFn) -> Detail:
             values[p.key] = draw(st.integers(1, 8))
         elif p.scale != "integer":
             values[p.key] = draw(number)
-    pair = draw(st.sampled_from(ALLOWED_NEIGHBOURS))
+    pair = draw(st.sampled_from([(1, 50)] if values["noise.joining"] == "highest" else ALLOWED_NEIGHBOURS))
     values["noise.first_neighbour"], values["noise.last_neighbour"] = pair
     made = with_values(Detail(), values)
     extra = {

@@ -10,13 +10,30 @@ from hypothesis import strategies as st
 
 from voldetail.detail import PAPER_NEIGHBOURS, START_CURVES, bounds, load_detail, rounded, save_detail
 from voldetail.detail.record import Detail
-from voldetail.fit.space import FOLDS, SHAPE_COUNT, SHAPE_RANGE, Kind, Space, fold, profile, shape_of
+from voldetail.fit.space import (
+    ELONGATION,
+    FOLD_HANDICAP,
+    FOLDS,
+    PIGMENT_HANDICAP,
+    SHAPE_COUNT,
+    SHAPE_RANGE,
+    STONE_GAIN,
+    STONE_HEIGHT,
+    Kind,
+    Space,
+    fold,
+    profile,
+    shape_of,
+)
 
 SPACE = Space("solid", (1.0, 60.0), 120.0)
 KINDS = st.builds(
     lambda ranks, *rest: Kind(*ranks, *rest), st.sampled_from(PAPER_NEIGHBOURS),
     st.sampled_from(["exponential", "gaussian"]), st.integers(1, 4), st.booleans(), st.sampled_from(FOLDS),
     st.booleans(), st.booleans(),
+) | st.builds(
+    lambda *free: Kind(1, 50, *free, stones=True), st.sampled_from(["exponential", "gaussian"]), st.integers(1, 4),
+    st.booleans(), st.just("none"), st.just(False), st.booleans(),
 )  # fmt: skip
 UNIT = st.floats(-0.5, 1.5)
 
@@ -42,12 +59,14 @@ def test_every_vector_is_a_valid_detail_of_its_kind(
     if amplitude is not None:
         assert detail.relief.amplitude == amplitude
     else:
-        low, high = space.roughness
+        low, high = STONE_HEIGHT if kind.stones else space.roughness
         assert low * 0.999 <= detail.relief.amplitude * noise.scale <= high * 1.001
     assert (noise.stripe_frequency > 0) == kind.striped
     if not kind.pigment:
-        assert (detail.reflectance.height_albedo, detail.reflectance.cell_albedo) == (0.0, 0.0)
+        pigment = detail.reflectance
+        assert (pigment.height_albedo, pigment.cell_albedo, pigment.speckle) == (0.0, 0.0, 0.0)
     assert (noise.weights[1] < 0) == kind.grains
+    assert (noise.joining == "highest") == kind.stones
     curve = np.array(noise.curve)
     assert curve.min() >= 0
     assert curve.max() <= 1
@@ -60,6 +79,8 @@ def test_every_vector_is_a_valid_detail_of_its_kind(
 @given(st.data(), KINDS)
 def test_decoding_undoes_encoding(data: st.DataObject, kind: Kind) -> None:
     vector = np.clip(data.draw(vectors(kind)), 0.0, 0.999)
+    if kind.stones:
+        vector[0] = max(vector[0], 0.2)  # on coarser cells the highest stones meet the bound of the amplitude
     detail = SPACE.decode(kind, vector)
     values: dict[str, float] = {}
     for name, unit in zip(SPACE.names(kind), vector, strict=True):
@@ -67,7 +88,11 @@ def test_decoding_undoes_encoding(data: st.DataObject, kind: Kind) -> None:
         low, high, _ = SPACE.range_of(name)
         if group == "shape":
             values[name] = low + unit * (high - low)
-        elif name == "roughness":
+        elif name == "stone_profile":
+            values[name] = low + unit * (high - low)
+        elif name == "stone_gain":
+            values[name] = detail.noise.gain
+        elif name in ("roughness", "stone_height"):
             values[name] = detail.relief.amplitude * detail.noise.scale
         else:
             values[name] = getattr(getattr(detail, group), field)
@@ -83,6 +108,35 @@ def test_the_ends_of_the_box_are_the_bounds() -> None:
     assert (low.noise.stripe_frequency, high.noise.stripe_frequency) == pytest.approx(SPACE.stripes)
     assert (low.noise.lacunarity, high.noise.lacunarity) == pytest.approx(bounds("noise.lacunarity"))
     assert (low.noise.angle, high.noise.angle) == pytest.approx((0.0, math.pi), abs=1e-5)
+
+
+def test_stones_are_as_high_as_wide_and_rise_steeply_from_narrow_gaps() -> None:
+    kind = Kind(1, 50, "exponential", 2, False, pigment=True, stones=True)
+    names = SPACE.names(kind)
+    assert not any(name.startswith("shape.") for name in names)
+    low, high = (SPACE.decode(kind, np.full(len(names), v)) for v in (0.0, 1.0))
+    assert low.noise.curve == pytest.approx(np.linspace(0, 1, 11))
+    assert np.diff(high.noise.curve)[0] > 5 * np.diff(high.noise.curve)[-1]
+    assert (low.noise.gain, high.noise.gain) == pytest.approx(STONE_GAIN)
+    assert (low.noise.elongation, high.noise.elongation) == pytest.approx(ELONGATION)
+    assert (low.relief.amplitude * low.noise.scale) == pytest.approx(STONE_HEIGHT[0])
+
+
+def test_a_plain_space_has_the_papers_numbers_only() -> None:
+    plain = Space("solid", (1.0, 60.0), 120.0, plain=True)
+    kind = Kind(1, 2, "exponential", 3, True)
+    assert "noise.gain" in SPACE.names(kind)
+    assert "noise.gain" not in plain.names(kind)
+    assert plain.decode(kind, np.full(len(plain.names(kind)), 0.4)).noise.gain == 1.0
+
+
+def test_what_seldom_looks_like_nature_has_to_pay_for_itself() -> None:
+    plain = Kind(1, 2, "gaussian", 2, False)
+    assert plain.handicap == 1.0
+    assert Kind(1, 2, "gaussian", 2, True).handicap > 1.0
+    assert Kind(1, 50, "gaussian", 2, True).handicap == 1.0
+    assert Kind(1, 50, "gaussian", 2, False, stones=True).handicap < 1.0
+    assert Kind(1, 2, "gaussian", 2, False, "ridge", False, True).handicap == pytest.approx(FOLD_HANDICAP * PIGMENT_HANDICAP)
 
 
 def test_angles_wrap_and_the_rest_is_clipped() -> None:
