@@ -28,6 +28,11 @@ CASES = {
     "all points": {"noise.last_neighbour": 50, "noise.octaves": 3},
     "striped": {"noise.stripe_frequency": 1.5, "noise.stripe_spread": 2.0, "noise.anisotropy": 0.5, "noise.angle": 0.7},
     "grains": {"noise.weights": (1.0, -1.0, 1.0), "noise.envelope": "gaussian", "reflectance.cell_albedo": 0.4},
+    "stones": {
+        "noise.joining": "highest", "noise.last_neighbour": 50, "noise.facets": 0.9, "noise.elongation": 2.0,
+        "noise.size_spread": 0.4, "noise.octaves": 2, "noise.gain": 0.3, "noise.lacunarity": 3.0,
+        "reflectance.cell_albedo": 0.3, "reflectance.speckle": 0.3,
+    },
 }
 
 
@@ -52,6 +57,7 @@ GOLDEN: dict[str, list[float]] = {
     "all points": [0.66348, 0.17368, 0.4105, 0.54784, 0.39259, 0.68606, 0.11489],
     "striped": [0.82664, 0.65124, 0.57877, 0.64959, 0.30708, 0.68838, 0.09023],
     "grains": [0.30683, 0.27084, 0.25171, 0.86966, 0.17496, 0.68204, 0.17055],
+    "stones": [0.58238, 0.32489, 0.19263, 0.49928, 0.17932, 0.66613, 0.16657],
 }
 
 

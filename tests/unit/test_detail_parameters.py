@@ -138,3 +138,11 @@ def test_summary_tells_stretch_across_the_dense_axis_and_gloss() -> None:
     assert "glossy (shininess 30)" in bright
     reverse = summary(with_values(Detail(), {"noise.anisotropy": 0.5, "noise.angle": 0.0}))
     assert "stretched 2 times along 0 degrees" in reverse
+
+
+def test_stones_are_called_stones() -> None:
+    stones = {"noise.joining": "highest", "noise.last_neighbour": 50, "noise.scale": 20.0, "noise.octaves": 1}
+    angular = summary(with_values(Detail(), stones | {"noise.facets": 0.9}))
+    assert angular.startswith("angular stones about 0.05 scene units across")
+    rough = summary(with_values(Detail(), stones | {"noise.octaves": 2}))
+    assert rough.startswith("round stones about 0.05 scene units across, roughened by 1 finer octave")

@@ -11,6 +11,7 @@ from voldetail.detail.record import Detail, values_of
 _GLOSSY = (
     0.05  # Ks above which a highlight is worth mentioning: 5 % of the beam, about a dielectric's reflectance
 )
+_ANGULAR = 0.5  # facets above which the flat faces are what one sees
 _STRETCHED = 1.1  # a ratio below this cannot be told from round cells by eye
 
 
@@ -26,8 +27,15 @@ def describe_in_words(detail: Detail) -> list[tuple[str, str, str, str]]:
 def summary(detail: Detail) -> str:
     """One sentence that says what the detail is like."""
     noise = detail.noise
-    octaves = "1 octave" if noise.octaves == 1 else f"{noise.octaves} octaves"
-    parts = [f"{octaves} of {noise.domain} noise with cells about {1 / noise.scale:.2g} scene units across"]
+    octaves = noise.octaves
+    if noise.joining == "highest":
+        # What is seen of a stone is about as large as a cell: there is one in each, and they hide each other.
+        shape = "angular" if noise.facets > _ANGULAR else "round"
+        parts = [f"{shape} stones about {1 / noise.scale:.2g} scene units across"]
+        parts += [f"roughened by {octaves - 1} finer octave{'s' * (octaves > 2)}"] * (octaves > 1)
+    else:
+        counted = "1 octave" if octaves == 1 else f"{octaves} octaves"
+        parts = [f"{counted} of {noise.domain} noise with cells about {1 / noise.scale:.2g} scene units across"]
     stretch = max(noise.anisotropy, 1 / noise.anisotropy)
     if stretch >= _STRETCHED:
         # Denser along x means longer across it.
