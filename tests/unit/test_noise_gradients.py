@@ -36,7 +36,9 @@ MIX = np.random.default_rng(12).normal(size=COUNT)  # the output is reduced with
 STONES = ("facets", "elongation", "size_spread")
 Case = tuple[int, int, int, int, bool, bool]  # dimensions, k, k', octaves, round envelope, stones
 # Two octaves where the kernels compile quickly; the others are unrolled over four points.
-CASES: list[Case] = [(3, 1, 50, 2, True, False), (2, 2, 3, 1, False, False), (3, 1, 2, 1, False, False), (3, 1, 50, 2, False, True)]
+CASES: list[Case] = [
+    (3, 1, 50, 2, True, False), (2, 2, 3, 1, False, False), (3, 1, 2, 1, False, False), (3, 1, 50, 2, False, True),
+]  # fmt: skip
 NAMES = [*VALUES, "x", "y", "z", "curve 3", "curve 5", "curve 8"]
 
 
@@ -83,7 +85,7 @@ def reverse(case: Case, float_type: Any = Float64) -> dict[str, float]:
 
 
 def tolerance(name: str) -> float:
-    # The moments' slope in phi and theta, and in the stones' numbers, is itself a difference quotient, of step 0.01 (noise.moments).
+    # The moments' slope in phi, theta and the stones' numbers is itself a difference quotient, of step 0.01.
     return 2e-3 if name.startswith("stripe") or name in STONES else 1e-5
 
 

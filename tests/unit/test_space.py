@@ -86,10 +86,10 @@ def test_decoding_undoes_encoding(data: st.DataObject, kind: Kind) -> None:
     for name, unit in zip(SPACE.names(kind), vector, strict=True):
         group, _, field = name.partition(".")
         low, high, _ = SPACE.range_of(name)
-        if group == "shape":
+        if group == "shape" or name == "stone_profile":
             values[name] = low + unit * (high - low)
-        elif name == "stone_profile":
-            values[name] = low + unit * (high - low)
+        elif name == "stone_stretch":
+            values[name] = detail.noise.anisotropy
         elif name == "stone_gain":
             values[name] = detail.noise.gain
         elif name in ("roughness", "stone_height"):

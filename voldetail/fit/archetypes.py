@@ -64,7 +64,8 @@ def archetypes(space: Space, anisotropy: tuple[float, float]) -> list[Candidate]
         scale = float(np.exp(low + (high - low) * (0.3 + 0.6 * step / (SCALES - 1))))
         # The light alone makes relief look stretched; half of the spectrum's stretch is taken for the relief's own.
         values = {
-            "noise.scale": scale, "roughness": rough, "stone_height": 2.0 * rough, "noise.gain": 1.0, "noise.anisotropy": factor**-0.5, "noise.angle": angle,
+            "noise.scale": scale, "roughness": rough, "noise.gain": 1.0, "noise.anisotropy": factor**-0.5, "noise.angle": angle,
+            "stone_height": 0.4 + rough, "stone_stretch": 1.0,
             "reflectance.speckle": 0.2, "reflectance.speckle_scale": space.finest, "shape.0": 0.0, "shape.1": 0.0, "shape.2": 0.0,
         } | numbers
         out.append(Candidate(kind, space.encode(kind, values)))

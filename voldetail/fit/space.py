@@ -35,8 +35,11 @@ FINEST_SPECKS = 4.0
 
 PIGMENT = ("height_albedo", "cell_albedo", "speckle", "speckle_scale")
 
-STONE_HEIGHT = (0.4, 1.6)
+STONE_HEIGHT = (0.4, 1.2)
 """Range of the amplitude in cells where stones are searched: they are about as high as wide, never a flat mosaic."""
+
+STONE_STRETCH = (0.6, 1.67)
+"""Range of the anisotropy where stones are searched: they lie every way, and what the light stretches is not theirs."""
 
 ELONGATION = (1.0, 2.2)
 SIZE_SPREAD = (0.0, 0.55)
@@ -54,7 +57,14 @@ PIGMENT_HANDICAP = 1.05
 within single cells, fit much and look like little; stones look right where they are only almost as near; more numbers
 for pigment fit a few percent by themselves. Tuned by eye on gravel, roughcast, bark and sand."""
 
-LOGARITHMIC = ("roughness", "stone_height", "stone_gain", "noise.stripe_frequency")
+OF_STONES = {
+    "roughness": "stone_height", "noise.anisotropy": "stone_stretch", "noise.gain": "stone_gain", "shape.0": "stone_profile",
+}
+"""Numbers that have a range of their own where stones are searched, and the names that this range goes by."""
+
+PLAIN_NAME = {own: name for name, own in OF_STONES.items()}
+
+LOGARITHMIC = ("roughness", "stone_height", "stone_gain", "stone_stretch", "noise.stripe_frequency")
 """Numbers searched on a logarithmic scale though they are no parameter of a detail, or one that is declared linear."""
 
 FOLDS = ("none", "ridge", "billow")
@@ -65,8 +75,8 @@ class Kind:
     """What is discrete: ranks of feature points, envelope, octaves, whether there are stripes, how H is folded.
 
     grains: the second point counts against the first, so that the noise vanishes on the border of cells. stones: the
-    highest kernel alone counts, each a body of its own shape. pigment: albedo varies with height, from grain to grain and by specks. fold: "none" keeps H monotone; "ridge" is 1 - |2H - 1| of a
-    monotone H, "billow" |2H - 1|.
+    highest kernel alone counts, each a body of its own shape. pigment: albedo varies with height, from grain to grain and
+    by specks. fold: "none" keeps H monotone; "ridge" is 1 - |2H - 1| of a monotone H, "billow" |2H - 1|.
     """
 
     first: int
@@ -85,7 +95,8 @@ class Kind:
         return math.prod(
             factor
             for applies, factor in (
-                (self.fold != "none", FOLD_HANDICAP), (self.striped and (self.first, self.last) != (1, 50), STRIPED_CELLS_HANDICAP),
+                (self.fold != "none", FOLD_HANDICAP),
+                (self.striped and (self.first, self.last) != (1, 50), STRIPED_CELLS_HANDICAP),
                 (self.stones, STONES_HANDICAP), (self.pigment, PIGMENT_HANDICAP),
             )
             if applies
@@ -115,11 +126,9 @@ class Space:
         """Return the names of the numbers of ``kind``, in order."""
         out = ["noise.scale", "noise.anisotropy", "noise.angle"]
         if self.amplitude is None:
-            out.append("stone_height" if kind.stones else "roughness")
+            out.append("roughness")
         if kind.octaves > 1:
-            out.append("noise.lacunarity")
-            if not self.plain:
-                out.append("stone_gain" if kind.stones else "noise.gain")
+            out += ["noise.lacunarity"] if self.plain else ["noise.lacunarity", "noise.gain"]
         if kind.stones:
             out += ["noise.facets", "noise.elongation", "noise.size_spread"]
         if kind.striped:
@@ -127,7 +136,7 @@ class Space:
         if kind.pigment:
             out += [f"reflectance.{name}" for name in PIGMENT]
         if kind.stones:
-            return [*out, "stone_profile"]
+            return [OF_STONES.get(name, name) for name in (*out, "shape.0")]
         return out + [f"shape.{i}" for i in range(SHAPE_COUNT)]
 
     def range_of(self, name: str) -> tuple[float, float, bool]:
@@ -136,6 +145,7 @@ class Space:
             return -SHAPE_RANGE, SHAPE_RANGE, False
         own = {
             "noise.scale": self.scale, "roughness": self.roughness, "stone_height": STONE_HEIGHT,
+            "stone_stretch": STONE_STRETCH,
             "stone_profile": (0.0, SHAPE_RANGE), "noise.gain": GAIN, "stone_gain": STONE_GAIN,
             "noise.elongation": ELONGATION, "noise.size_spread": SIZE_SPREAD, "noise.anisotropy": self.anisotropy,
             "noise.stripe_frequency": self.stripes, "reflectance.height_albedo": HEIGHT_ALBEDO,
@@ -151,10 +161,8 @@ class Space:
         for name, unit in zip(self.names(kind), vector, strict=True):
             low, high, log = self.range_of(name)
             unit = unit % 1.0 if name == "noise.angle" else min(max(float(unit), 0.0), 1.0)
-            values[name] = low * (high / low) ** unit if log else low + unit * (high - low)
+            values[PLAIN_NAME.get(name, name)] = low * (high / low) ** unit if log else low + unit * (high - low)
         shape = np.array([values.get(f"shape.{i}", 0.0) for i in range(SHAPE_COUNT)])
-        if kind.stones:
-            shape[0] = values["stone_profile"]
         lacunarity = values.get("noise.lacunarity", parameter("noise.lacunarity").default)
         shown = 1 + int(max(0.0, math.log(self.finest / values["noise.scale"]) / math.log(lacunarity)))
         noise = NoiseParameters(
@@ -162,15 +170,17 @@ class Space:
             weights=GRAINS if kind.grains else (1.0, 1.0, 1.0), joining="highest" if kind.stones else "sum",
             facets=values.get("noise.facets", 0.0), elongation=values.get("noise.elongation", 1.0),
             size_spread=values.get("noise.size_spread", 0.0), octaves=min(kind.octaves, shown), lacunarity=lacunarity,
-            gain=values.get("noise.gain", values.get("stone_gain", 1.0)), stripe_frequency=values.get("noise.stripe_frequency", 0.0),
+            gain=values.get("noise.gain", 1.0), stripe_frequency=values.get("noise.stripe_frequency", 0.0),
             stripe_spread=values.get("noise.stripe_spread", 0.0),
             scale=values["noise.scale"], anisotropy=values["noise.anisotropy"], angle=values["noise.angle"],
             curve=tuple(float(v) for v in fold(profile(shape), kind.fold)),
         )
         amplitude = self.amplitude
         if amplitude is None:
-            amplitude = min(values["stone_height" if kind.stones else "roughness"] / values["noise.scale"], bounds("relief.amplitude")[1])
-        pigment = Reflectance(**{name: values[f"reflectance.{name}"] for name in PIGMENT if kind.pigment})
+            amplitude = min(values["roughness"] / values["noise.scale"], bounds("relief.amplitude")[1])
+        pigment = Reflectance()
+        if kind.pigment:
+            pigment = pigment.model_copy(update={name: values[f"reflectance.{name}"] for name in PIGMENT})
         return Detail(noise=noise, relief=ReliefParameters(amplitude=amplitude), reflectance=pigment)
 
     def encode(self, kind: Kind, values: dict[str, float]) -> Vector:

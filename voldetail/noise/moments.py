@@ -27,8 +27,8 @@ STEP = 1e-2
 def moments(settings: NoiseSettings, float_type: Any, *numbers: float) -> tuple[float, float]:
     """Return (mean, deviation) of one octave of noise, over fixed low-discrepancy positions and a fixed salt.
 
-    They depend on what is discrete and on ``numbers`` (those of `single_octave`) only, not on the detail's seed. `math.fsum` rounds
-    once, so the result does not depend on the order of summation.
+    They depend on what is discrete and on ``numbers`` (those of `single_octave`) only, not on the detail's seed.
+    `math.fsum` rounds once, so the result does not depend on the order of summation.
     """
     return _moments(replace(settings, octaves=1), float_type, numbers)
 
