@@ -27,7 +27,18 @@ from typing import Any
 import numpy as np
 
 from tests.benchmarks.relit import (
-    SHARED, Picture, Yardstick, exposed, heights_of, look, markdown, raise_by_brightness, reflectance_under, save_sheet, slopes,
+    SHARED,
+    Picture,
+    Yardstick,
+    exposed,
+    heights_of,
+    look,
+    markdown,
+    raise_by_brightness,
+    reflectance_under,
+    save_sheet,
+    side,
+    slopes,
 )
 from voldetail.errors import InputError
 from voldetail.files import write_text
@@ -44,6 +55,9 @@ from voldetail.scene.view import Zone, view_of
 
 METRICS = ("combined", "patches", "jets", "published")
 """The first is what was minimised; patches and jets take no part in it; the last is GD10's own."""
+
+COLUMNS = (*METRICS, "side")
+"""`side` is no distance between textures: how far apart they look lit from, the length of a difference of vectors."""
 
 METHODS = ("fit", "flat", "brightness")
 
@@ -196,10 +210,11 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
             "brightness": look(bumps, lamp, bumps_reflectance),
         }
         yardstick = Yardstick(seen.luminance, seen.mask, METRICS)
-        ratios = {
-            method: yardstick.ratios(exposed(luminance(picture), seen.luminance, seen.mask, seen.white))
-            for method, picture in pictures.items()
-        }
+        own_side, ratios = side(seen.luminance, seen.mask), {}
+        for method, picture in pictures.items():
+            grey = exposed(luminance(picture), seen.luminance, seen.mask, seen.white)
+            away = float(np.linalg.norm(side(grey, seen.mask) - own_side))
+            ratios[method] = {**yardstick.ratios(grey), "side": round(away, 3)}
         lights.append(
             {
                 "light": shot.name, "held_out": shot.name != first.name,
@@ -223,6 +238,7 @@ def _flash(shot: Shot) -> Light:
     if not shot.at_camera or shot.light.position is None:
         return shot.light
     x, y, z = shot.light.position
+    # The photos are square, 2 scene units wide.
     try:
         return parse_light(f"flash@{0.5 + x / 2:.6g},{0.5 - y / 2:.6g},{z / 2:.6g}")
     except InputError:
@@ -249,7 +265,7 @@ def _turned(one: Lamp, other: Lamp, x: float, y: float) -> float:
 def share(lights: Iterable[dict[str, Any]]) -> dict[str, str]:
     """Say by each metric on how many of the lights the fit is nearer than both others."""
     ratios = [light["ratios"] for light in lights]
-    won = {m: sum(r["fit"][m] < min(r["flat"][m], r["brightness"][m]) for r in ratios) for m in METRICS}
+    won = {m: sum(r["fit"][m] < min(r["flat"][m], r["brightness"][m]) for r in ratios) for m in COLUMNS}
     return {metric: f"{count} of {len(ratios)}" for metric, count in won.items()}
 
 
@@ -258,12 +274,13 @@ def table(records: list[dict[str, Any]]) -> str:
     rows = []
     for record in records:
         held = [light["ratios"] for light in record["lights"] if light["held_out"]]
-        for metric in METRICS:
+        for metric in COLUMNS:
             medians = [f"{float(np.median([r[method][metric] for r in held])):.2f}" for method in METHODS]
             rows.append([record["capture"], metric, *medians, record["fit_nearest"][metric]])
     header = ["capture", "metric", "fit", "photo, flat", "brightness as height", "fit nearest"]
     return (
-        "Distance from the photo under lights not fitted, over the distance between that photo's halves: medians.\n\n"
+        "Distance from the photo under lights not fitted, over the distance between that photo's halves: medians. Side: how far"
+        " apart photo and picture look lit from, 0 to about 2.\n\n"
         + markdown(header, rows)
     )
 

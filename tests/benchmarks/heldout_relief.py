@@ -11,6 +11,7 @@ the fit's slopes, and another cut of the same scan, which says how near one can 
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,7 +24,17 @@ from scipy.ndimage import gaussian_filter
 from scipy.stats import wasserstein_distance
 
 from tests.benchmarks.relit import (
-    SHARED, Picture, Yardstick, heights_of, look, markdown, raise_by_brightness, raise_to, reflectance_under, save_sheet, slopes,
+    SHARED,
+    Picture,
+    Yardstick,
+    heights_of,
+    look,
+    markdown,
+    raise_by_brightness,
+    raise_to,
+    reflectance_under,
+    save_sheet,
+    slopes,
 )
 from voldetail.detail import Reflectance
 from voldetail.files import write_text
@@ -103,7 +114,7 @@ def bands(heights: NDArray[np.float64]) -> NDArray[np.float64]:
     window = np.outer(np.hanning(heights.shape[0]), np.hanning(heights.shape[1]))
     power = np.abs(np.fft.fft2((heights - heights.mean()) * window)) ** 2
     frequency = np.hypot(np.fft.fftfreq(heights.shape[0])[:, None], np.fft.fftfreq(heights.shape[1])[None, :])
-    edges = zip(BANDS[:-1], BANDS[1:], strict=True)
+    edges = itertools.pairwise(BANDS)
     return np.array([power[(frequency > 1 / long) & (frequency <= 1 / short)].mean() for short, long in edges])
 
 
@@ -111,8 +122,9 @@ def compare(found: NDArray[np.float64], true: NDArray[np.float64], step: float) 
     """Return how two height maps over the same window differ; all but the amplitude ratio are 0 for the same."""
     steep, true_steep = slopes(found, step).ravel(), slopes(true, step).ravel()
     decades = np.log10(np.maximum(bands(found), 1e-30) / bands(true))
+    high, true_high = (found - found.mean()).ravel(), (true - true.mean()).ravel()
     return {
-        "heights": round(float(wasserstein_distance((found - found.mean()).ravel(), (true - true.mean()).ravel()) / true.std()), 3),
+        "heights": round(float(wasserstein_distance(high, true_high) / true.std()), 3),
         "slopes": round(float(wasserstein_distance(steep, true_steep) / true_steep.std()), 3),
         "spectrum": round(float(np.sqrt(np.mean(decades**2))), 3),
         "spectrum_bands": [round(float(d), 3) for d in decades],
@@ -181,8 +193,9 @@ def table(records: list[dict[str, Any]]) -> str:
     for record in records:
         for name, numbers in record["relief"].items():
             ratios = [light["ratios"][name] for light in record["lights"]]
+            relief = (numbers[key] for key in ("heights", "slopes", "spectrum", "amplitude_ratio"))
             rows.append([
-                record["scan"], name.replace("_", " "), *(numbers[k] for k in ("heights", "slopes", "spectrum", "amplitude_ratio")),
+                record["scan"], name.replace("_", " "), *relief,
                 f"{float(np.median(ratios[:-1])):.2f}", f"{ratios[-1]:.2f}",
             ])
     return (
