@@ -252,3 +252,24 @@ def test_a_perspective_camera_sees_a_flat_plane_alike() -> None:
     assert lit.covered.min() == 1.0
     assert lit.diffuse == pytest.approx(math.cos(math.radians(30.0)), abs=1e-3)
     assert lit.ambient == pytest.approx(lit.ambient.mean(), abs=1e-3)
+
+
+def test_heights_from_elsewhere_look_as_those_of_a_detail() -> None:
+    raised, given = build(setup(), SHAPE, ZONE), build(setup(), SHAPE, ZONE)
+    assert isinstance(raised, HeightField)
+    assert isinstance(given, HeightField)
+    raised.update(detail())
+    given.update(detail(reflectance__cell_albedo=0.3))  # an albedo that the new heights must not keep
+    given.raise_to(mitsuba().Float(np.asarray(raised.z)))
+    for lamp in LAMPS.values():
+        assert np.array_equal(components(given, lamp).diffuse, components(raised, lamp).diffuse)
+        assert np.array_equal(components(given, lamp).ambient, components(raised, lamp).ambient)
+
+
+def test_a_ramp_faces_away_from_where_it_rises() -> None:
+    ramp = build(setup(), SHAPE, ZONE)
+    assert isinstance(ramp, HeightField)
+    ramp.raise_to(0.5 * ramp.x)  # to the right, by one half
+    light = direction_of(180, 60)
+    wanted = (-0.5 * light[0] + light[2]) / math.hypot(0.5, 1.0)
+    assert components(ramp, Lamp(direction=light)).diffuse == pytest.approx(wanted, abs=1e-5)

@@ -29,7 +29,7 @@ AZIMUTHS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)
 
 
 class HeightField:
-    """Relief over the window of a View; `update` sets the relief, the rest looks at it."""
+    """Relief over the window of a View; `update` and `raise_to` set the relief, the rest looks at it."""
 
     def __init__(self, view: View, position: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
         mi = mitsuba()
@@ -61,10 +61,16 @@ class HeightField:
         return column, row
 
     def update(self, detail: Detail) -> None:
-        """Compute heights A_d R and vertex normals, and the sky's visibility at the vertices."""
-        relief, self.albedo = relief_and_albedo(detail, self.domain)
-        amplitude = dr.opaque(self.float_type, detail.relief.amplitude)
-        self.z = relief * amplitude
+        """Compute heights A_d R and the albedo's factor, and raise the plane to them."""
+        relief, albedo = relief_and_albedo(detail, self.domain)
+        self.raise_to(relief * dr.opaque(self.float_type, detail.relief.amplitude), albedo)
+
+    def raise_to(self, heights: Any, albedo: Any = None) -> None:
+        """Set the heights of the vertices, row by row, and what follows: normals and the sky's visibility.
+
+        ``albedo`` is the factor on the albedo at each vertex; None for 1.
+        """
+        self.z, self.albedo = heights, albedo
         dr.eval(self.z, self.albedo)
         # The highest point ends every walk towards the light.
         self.top = dr.max(self.z)

@@ -1,0 +1,148 @@
+"""What the benchmarks of unseen lights share: distances in units of a photo's own halves, height maps and sheets."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+from scipy.ndimage import binary_erosion, gaussian_filter, map_coordinates
+
+from voldetail.backend import mitsuba
+from voldetail.detail import Reflectance
+from voldetail.fit.reflectance import solve
+from voldetail.fit.target import Target
+from voldetail.image import to_srgb
+from voldetail.metric import describe, distance
+from voldetail.render import Components, components
+from voldetail.scene.heightfield import MARGIN, HeightField
+from voldetail.scene.lamp import Lamp
+
+Picture = NDArray[np.float32]
+Mask = NDArray[np.bool_]
+
+SHARED = Path(__file__).resolve().parents[3] / "shared" / "data"
+
+SUBSAMPLES = 2
+"""As in the fit, so that fit and photo are as sharp as they were there."""
+
+BRIGHTNESS_BLUR = 1.0
+"""Pixels by which brightness is blurred before it is taken for height: sensor grain would be spikes."""
+
+SIDE_BLUR = 1.0
+"""Pixels of blur for `side`: on the pebble wall's four photos one pixel tells the sides apart best, of 1, 2 and 4."""
+
+SHEET_BYTES = 300_000
+"""A sheet kept in results/ is no larger."""
+
+
+class Yardstick:
+    """Distances from one picture, in units of the distance between its own left and right half."""
+
+    def __init__(self, luminance: Picture, mask: Mask, metrics: Sequence[str]) -> None:
+        self.mask = mask
+        half = luminance.shape[1] // 2
+        left, right = np.s_[:, :half], np.s_[:, -half:]
+        self._references = {metric: describe(luminance, mask, metric=metric) for metric in metrics}
+        self.halves: dict[str, float] = {}
+        for metric in metrics:
+            one = describe(luminance[left], mask[left], metric=metric)
+            self.halves[metric] = distance(one, describe(luminance[right], mask[right], like=one))
+
+    def ratios(self, luminance: Picture) -> dict[str, float]:
+        """Return the distance of another picture by each metric, in units of the halves' own."""
+        found = {}
+        for metric, reference in self._references.items():
+            other = describe(luminance, self.mask, like=reference)
+            found[metric] = round(distance(reference, other) / self.halves[metric], 3)
+        return found
+
+
+def side(luminance: Picture, mask: Mask) -> NDArray[np.float64]:
+    """Return from which side a picture looks lit: E(|g|^2 g) / E(|g|^2)^(3/2), g the slope of its brightness, y up.
+
+    Shadows and turned faces are sharper away from the light, so the number points away from a side light, and is 0 for
+    a picture as steep one way as the other. Texture metrics hardly see the difference: they are made of even statistics.
+    """
+    down, right = np.gradient(gaussian_filter(to_srgb(luminance).astype(np.float64), SIDE_BLUR))
+    # What the blur brings in from outside the mask does not count.
+    inside = binary_erosion(mask, iterations=round(3 * SIDE_BLUR), border_value=1)
+    gradient = np.stack([right[inside], -down[inside]])
+    squared = np.sum(gradient**2, axis=0)
+    return np.asarray((gradient * squared).mean(axis=1) / max(float(squared.mean()) ** 1.5, 1e-12))
+
+
+def exposed(picture: Picture, like: Picture, mask: Mask, white: float) -> Picture:
+    """Return ``picture`` (H, W) or (H, W, 3) at the mean of ``like`` over the mask, clipped at ``white``."""
+    gain = float(like[mask].mean() / max(float(picture[mask].mean()), 1e-9))
+    return np.asarray(np.minimum(picture * gain, white), dtype=np.float32)
+
+
+def look(surface: HeightField, lamp: Lamp, reflectance: Reflectance) -> Picture:
+    """Return the picture (H, W, 3) of a surface as it was last raised."""
+    parts = components(surface, lamp, subsamples=SUBSAMPLES, shininess=(reflectance.shininess,))
+    return parts.colour(reflectance)
+
+
+def heights_of(surface: HeightField, margin: int = 0) -> NDArray[np.float64]:
+    """Return the heights over the window and ``margin`` pixels around it, (rows + 1, columns + 1) without one."""
+    z = np.asarray(surface.z, dtype=np.float64).reshape(surface.rows, surface.columns)
+    first, end = MARGIN - margin, MARGIN + margin + 1
+    return z[first : surface.view.rows + end, first : surface.view.columns + end]
+
+
+def raise_to(surface: HeightField, heights: NDArray[np.floating]) -> None:
+    """Raise a surface to heights (rows, columns) of all its vertices, its margin included."""
+    surface.raise_to(mitsuba().Float(np.ascontiguousarray(heights, dtype=np.float32).ravel()))
+
+
+def slopes(heights: NDArray[np.floating], step: float) -> NDArray[np.float64]:
+    """Return how steep a height map is, the length of its gradient, where central differences exist."""
+    down, right = np.gradient(heights, step)
+    return np.asarray(np.hypot(down, right)[1:-1, 1:-1], dtype=np.float64)
+
+
+def raise_by_brightness(surface: HeightField, flat: Picture, steepness: float) -> None:
+    """Take brightness for height: what is done where there is one photo and nothing else.
+
+    ``flat`` is the luminance with the light's own fall-off taken away; it is encoded, as such programs read it, and
+    scaled so that its slopes over the window have the root mean square ``steepness``. Outside the window it is mirrored.
+    """
+    blurred = gaussian_filter(to_srgb(flat).astype(np.float64), BRIGHTNESS_BLUR, mode="reflect")
+    # Vertices are at the corners of pixels.
+    row, column = (np.arange(n) - MARGIN - 0.5 for n in (surface.rows, surface.columns))
+    height = map_coordinates(blurred, np.meshgrid(row, column, indexing="ij"), order=1, mode="reflect")
+    window = height[MARGIN : MARGIN + flat.shape[0] + 1, MARGIN : MARGIN + flat.shape[1] + 1]
+    found = float(np.sqrt(np.mean(slopes(window, surface.step) ** 2)))
+    raise_to(surface, height * (steepness / max(found, 1e-9)))
+
+
+def reflectance_under(surface: HeightField, target: Target, *, specular: bool) -> Reflectance:
+    """Return the reflectance that the fit's own solve finds for a surface under the photo's light."""
+    parts: Components = components(surface, target.lamp, subsamples=SUBSAMPLES)
+    found = solve(target.luminance, parts, target.mask, specular=specular)
+    return Reflectance(
+        ambient=found.ambient, diffuse=found.diffuse, specular=found.specular, shininess=found.shininess, tint=target.tint
+    )
+
+
+def save_sheet(path: Path, rows: Sequence[Sequence[Picture]], gap: int = 4) -> None:
+    """Save pictures (H, W, 3), linear, as a table with white gaps, in as many colours as keep it small."""
+    lines = []
+    for row in rows:
+        spaced = [np.pad(np.clip(to_srgb(p), 0, 1), ((0, gap), (0, gap), (0, 0)), constant_values=1) for p in row]
+        lines.append(np.concatenate(spaced, axis=1))
+    page = Image.fromarray(np.round(np.concatenate(lines) * 255).astype(np.uint8))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    for colours in (128, 64, 32, 16):
+        page.quantize(colours, dither=Image.Dither.NONE).save(path, optimize=True)
+        if path.stat().st_size <= SHEET_BYTES:
+            return
+
+
+def markdown(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """Return a table in Markdown."""
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines) + "\n"
