@@ -68,7 +68,7 @@ def sampled(
             "noise.angle": angle if stretched else math.pi * float(point[2]),
             "noise.lacunarity": 1.5 + 1.5 * float(point[4]),
             "reflectance.speckle": 0.4 * float(point[13]),
-            "reflectance.speckle_scale": space.finest * 0.25 ** float(point[12]),
+            "reflectance.speckle_scale": space.finest * 0.5 ** float(point[12]),
             "stone_height": 0.5 + 0.6 * float(point[1]), "noise.gain": 1.0, "stone_gain": 0.05 * 8.0 ** float(point[9]),
             "noise.stripe_frequency": 0.5 * 6.0 ** float(point[5]),
             "reflectance.height_albedo": 0.3 * float(point[6]), "reflectance.cell_albedo": 0.4 * float(point[7]),

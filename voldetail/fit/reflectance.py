@@ -28,11 +28,12 @@ SAMPLES = 4608
 ACTIVE_SET_STEPS = 12
 
 GLOSS_GAIN = 0.7
-"""A highlight has to take away this much of a matt surface's residual: a broad one on flat relief can stand for shading
+"""Share of a matt surface's residual that a highlight may at most leave: a broad one on flat relief can stand for shading
 that relief should make, and then shines on every other shape. Tuned on the weathered rock of ../shared/data."""
 
-GLOSS_LIMIT = 0.15
-"""Largest Ks: some three times what a clean dielectric reflects head-on."""
+GLOSS_LIMIT = 0.06
+"""Largest Ks: what a dielectric of index 1.65 reflects head-on. With more, white lichen on a slab of ../shared/data became
+a mirror."""
 
 DARK = 0.03
 """Linear luminance below which differences count less and less, in the weights 1 / (q + DARK): about where sRGB's curve

@@ -30,8 +30,8 @@ CELL_ALBEDO = (0.0, 0.35)
 ground instead of raising it; tuned on gravel and grass."""
 
 SPECKLE = (0.0, 0.5)
-FINEST_SPECKS = 4.0
-"""Strength of the specks, and how much coarser than the finest octave they may be."""
+FINEST_SPECKS = 2.0
+"""Strength of the specks, and how much coarser than the finest octave they may be: larger ones are seen as scales."""
 
 PIGMENT = ("height_albedo", "cell_albedo", "speckle", "speckle_scale")
 
