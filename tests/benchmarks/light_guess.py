@@ -26,7 +26,7 @@ from voldetail.image import load_photo, luminance
 from voldetail.scene.lights_text import angles_of, direction_of
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "data"
-RENDERED = 60
+RENDERED = 100
 NEAR = 30.0  # degrees: an azimuth this near is a hit
 MOSAIC_HEIGHT = 2.35  # tile widths, the middle of the range in lights.json
 ROCK = (slice(100, 250), slice(140, 370))  # the nearly plane patch of uw_psm_rock, from its record
@@ -80,7 +80,7 @@ def case(
 def rendered() -> Iterator[Case]:
     """Details drawn at random, as in tests.benchmarks.recovery, under random lights of 30 to 60 degrees."""
     for index in range(RENDERED):
-        detail, light = truth_of(f"light-{index}")
+        detail, light = truth_of(f"unseen-{index}")
         azimuth, elevation = map(float, light.split(","))
         yield case("rendered", str(index), luminance(photo_of(detail, light)), azimuth, elevation)
 
