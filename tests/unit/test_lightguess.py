@@ -152,5 +152,7 @@ def test_auto_looks_at_the_zone() -> None:
 def test_auto_is_refused_where_nothing_is_known() -> None:
     with pytest.raises(InputError, match=rf"cannot be told.*at least {FLOOR:g}.*give --light as AZ,EL"):
         resolve_light(setup(), photo(np.full((64, 64), 0.4, np.float32)))
+    with pytest.raises(InputError, match="reaches outside the photo"):
+        resolve_light(setup(photo={"path": "lumps.png", "zone": [200, 0, 64, 64]}), photo(lumps(75.0)))
     with pytest.raises(InputError, match="a plane that faces the camera"):
         resolve_light(setup(proxy={"kind": "sphere"}), photo(lumps(75.0)))

@@ -6,6 +6,7 @@ import numpy as np
 
 from voldetail.errors import InputError
 from voldetail.fit.lightguess import FLOOR, LightGuess, guess_light
+from voldetail.fit.zone import check_zone
 from voldetail.image import Photo, load_mask, luminance
 from voldetail.scene.lights_text import FORMS_GIVEN, direction_of
 from voldetail.scene.setup import Light, Setup
@@ -28,7 +29,9 @@ def resolve_light(setup: Setup, photo: Photo) -> tuple[Setup, LightGuess | None]
     if photo.opaque is not None:
         mask = mask & photo.opaque
     # Without a zone the whole photo counts: more bumps tell more.
-    x, y, w, h = setup.photo.zone or (0, 0, columns, rows)
+    zone = setup.photo.zone or (0, 0, columns, rows)
+    check_zone(zone, (rows, columns))
+    x, y, w, h = zone
     part = (slice(y, y + h), slice(x, x + w))
     guess = guess_light(luminance(photo.pixels)[part], mask[part])
     if guess.confidence < FLOOR:

@@ -7,6 +7,9 @@ at, second moments cannot tell. Two third moments do, in part, and both were cho
 tests/benchmarks/light_guess.py): the coarse extremes of brightness lie towards the light of where they would by chance
 (lumps brightest on their lit side, gaps darkest beside it), and the sharp, curved edges of cast shadows are crossed from
 bright to dark on the way to the light. The first is turned round where the relief is pits and not lumps.
+
+Measured (results/light/light.md): the axis is right to 9 degrees in the median over 100 renderings and 11 over 66 lights of
+real captures, the end for 76 and 95 in a hundred. Craters of the moon and other pits are what is taken the wrong way round.
 """
 
 from __future__ import annotations
