@@ -58,14 +58,14 @@ def fit(
     """Return the FitResult for a photo under a light, or for a whole Setup.
 
     ``photo`` is a file or "skimage:gravel" (":grass", ":brick"); ``light`` as on the command line ("AZ,EL", "x,y,z",
-    "flash", "point:x,y,z") or a Light. ``options`` are the fields of a Setup, nested ones as dictionaries:
-    mask, proxy={"kind": "sphere"}, camera, amplitude, domain, seed, fit={"evaluations": 500}, and zone and resolution of
-    the photo. Raises InputError for input that cannot be used; Ctrl-C ends the search with the best so far.
+    "flash", "point:x,y,z", or "auto" to have it estimated) or a Light. ``options`` are the fields of a Setup, nested ones
+    as dictionaries: mask, proxy={"kind": "sphere"}, camera, amplitude, domain, seed, fit={"evaluations": 500}, and zone and
+    resolution of the photo. Raises InputError for input that cannot be used; Ctrl-C ends the search with the best so far.
     """
     if isinstance(photo, Setup):
         return fit_setup(photo, on_progress=on_progress)
     if light is None:
-        raise InputError('A light is needed: "AZ,EL" in degrees, "x,y,z", "flash" or "point:x,y,z".')
+        raise InputError('A light is needed: "AZ,EL" in degrees, "x,y,z", "flash", "point:x,y,z" or "auto".')
     source: dict[str, Any] = {"path": str(photo)}
     source |= {key: options.pop(key) for key in ("zone", "resolution", "encoding") if key in options}
     setup = setup_from({"photo": source, "light": light, **options}, "the call of fit")

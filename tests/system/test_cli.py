@@ -245,3 +245,33 @@ def test_relight(detail: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert main([*words[:3], "0,90", *words[4:], "--force", "--animation", "none"]) == 0
     assert len(list(out.glob("frame-*"))) == 4
     assert not (out / "animation.gif").exists()
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_light_that_is_estimated(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "out"
+    words = ["fit", "skimage:brick", "--light", "auto", "--zone", "128,128,256,256", "--resolution", "64"]
+    words += ["--solver", "paper", "-o", str(folder)]
+    assert main([*words, "--evaluations", "5"]) == 0
+    assert "Light estimated: azimuth" in capsys.readouterr().out
+    detail, light = load_detail(folder / "detail.json"), load_setup(folder / "setup.toml").light
+    assert detail.provenance is not None
+    assert light.direction is not None
+    estimated = detail.provenance.settings["light_estimated"]
+    assert isinstance(estimated, dict)
+    assert [float(v) for v in detail.provenance.light.split(",")] == pytest.approx(
+        [estimated["azimuth"], estimated["elevation"]]
+    )
+    # The same photo gives the same light, so the state still belongs to it.
+    assert main([*words, "--evaluations", "8", "--resume"]) == 0
+    assert load_setup(folder / "setup.toml").light == light
+
+
+def test_a_light_that_cannot_be_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    Image.new("RGB", (96, 96), (120, 120, 120)).save(tmp_path / "grey.png")
+    folder = tmp_path / "out"
+    assert main(["fit", str(tmp_path / "grey.png"), "--light", "auto", "-o", str(folder)]) == 2
+    shown = capsys.readouterr()
+    assert "cannot be told from its gradients" in shown.err
+    assert shown.err.count("\n") == 1
+    assert not folder.exists()

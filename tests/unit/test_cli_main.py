@@ -68,6 +68,7 @@ def test_bad_input(words: list[str], says: str, capsys: pytest.CaptureFixture[st
         (["render", "{}", "sphere", "-o", "x.gif"], "has the suffix .gif"),
         (["render", "{}", "sphere", "-o", "none/x.png"], "there is no folder none"),
         (["render", "{}", "sphere", "-o", "x.png", "--light", "0,-5"], "behind the surface"),
+        (["render", "{}", "sphere", "-o", "x.png", "--light", "auto"], "estimated from a photo, by fit alone"),
         (["render", "{}", "sphere", "-o", "x.png", "--light", "0,5", "--envmap", "sky.exr"], "choose one"),
         (["render", "{}", "sphere", "-o", "x.png", "--envmap", "sky.exr"], "does not exist"),
         (["render", "{}", "sphere", "-o", "x.png", "--shading", "toon"], "phong or principled"),

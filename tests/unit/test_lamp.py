@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from voldetail.backend import mitsuba
+from voldetail.errors import InputError
 from voldetail.scene.lamp import Lamp, flash_foot, lamp_of
 from voldetail.scene.lights_text import parse_light
 from voldetail.scene.setup import Light
@@ -77,3 +78,8 @@ def test_on_a_plane_and_at_points_are_the_same_light(lamp: Lamp) -> None:
     if lamp.position is not None:
         expected = np.linalg.norm(np.array([x - 0.3, y + 0.2, np.full(50, 1.5)]), axis=0)
         assert np.array(distance) == pytest.approx(expected, rel=1e-5)
+
+
+def test_auto_is_no_lamp() -> None:
+    with pytest.raises(InputError, match="light auto is estimated from a photo, by fit alone"):
+        lamp_of(parse_light("auto"))

@@ -246,3 +246,11 @@ def test_example_scenes(name: str) -> None:
     x, y, width, height = setup.photo.zone
     assert max(x + width, y + height) <= 512  # the size of these photographs
     assert setup_from_text(setup_to_toml(setup)) == setup
+
+
+def test_a_light_to_be_estimated() -> None:
+    setup = setup_from_text(SMALL, ["light=auto"])
+    assert setup.light.kind == "auto"
+    assert setup_from_text(setup_to_toml(setup)) == setup
+    assert setup_from_text(SMALL.replace('"70,50"', '"auto"')) == setup
+    assert setup_from_text(SMALL, ["light=auto", "light.strength=2"]).light.strength == 2

@@ -34,6 +34,7 @@ def test_flash_and_point() -> None:
     assert parse_light("flash@1.5") == Light(kind="flash", foot=None, height=1.5)
     assert parse_light("flash@0.25,0.75") == Light(kind="flash", foot=(0.25, 0.75), height=1.0)
     assert parse_light("flash@0.25,0.75,2") == Light(kind="flash", foot=(0.25, 0.75), height=2.0)
+    assert parse_light(" auto ") == Light(kind="auto")
     assert parse_light("point:1,-2,3") == Light(kind="point", position=(1, -2, 3))
 
 
@@ -43,6 +44,7 @@ def test_flash_and_point() -> None:
         ("", "not understood"),
         ("sun", "not understood"),
         ("flash@", "not understood"),
+        ("auto@1", "or auto to have it estimated"),
         ("point:", "not understood"),
         ("1,2,", "not understood"),
         ("45", "has 1 numbers where 2 or 3 are wanted"),
@@ -82,6 +84,8 @@ def test_refusals(text: str, says: str) -> None:
         {"kind": "flash", "direction": (0, 0, 1)},
         {"kind": "directional", "direction": (0, 0, 1), "foot": (0.5, 0.5)},
         {"kind": "point", "position": (0, 0, 1), "direction": (0, 0, 1)},
+        {"kind": "auto", "direction": (0, 0, 1)},
+        {"kind": "auto", "foot": (0.5, 0.5)},
         {"direction": (0, 0, 1), "strength": 0},
     ],
 )
@@ -99,7 +103,7 @@ def test_angles_and_direction_are_inverse(azimuth: float, elevation: float) -> N
     assert back[1] == pytest.approx(elevation)
 
 
-@pytest.mark.parametrize("text", ["70,50", "flash@1", "flash@0.25,0.75,2", "point:1,-2,3"])
+@pytest.mark.parametrize("text", ["70,50", "auto", "flash@1", "flash@0.25,0.75,2", "point:1,-2,3"])
 def test_text_of_a_light_is_what_was_typed(text: str) -> None:
     assert light_text(parse_light(text)) == text
 

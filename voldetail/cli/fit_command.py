@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 _Text = str | None
 LIGHT_HELP = (
     "The light in the photo: AZ,EL in degrees (azimuth counter-clockwise from the right, elevation above the"
-    " picture), x,y,z towards it, flash, flash@height, flash@u,v, or point:x,y,z."
+    " picture), x,y,z towards it, flash, flash@height, flash@u,v, or point:x,y,z; or auto to have it estimated"
+    " (for a flat surface under one distant light)."
 )
 WHERE, SCENE, SEARCH = "Where and what", "The scene", "The search"
 
@@ -125,16 +126,20 @@ def fit(
 def run(place: FitFolder, *, resume: bool, threads: int) -> None:
     """Fit the setup of ``place`` and fill it."""
     from voldetail.cli.progress import ProgressView
+    from voldetail.fit.autolight import resolve_light
     from voldetail.fit.fitter import fit as search
     from voldetail.fit.session import Progress, State
     from voldetail.fit.target import load_photo_of
 
     console = remarks()
     picture = load_photo_of(place.setup)
+    place.setup, guess = resolve_light(place.setup, picture)
     start = place.resumed(picture.sha256) if resume else None
     if resume and start is None:
         console.print("No state was saved in that folder yet: starting from the beginning.")
     use_threads(threads)
+    if guess is not None:
+        output().print(guess.sentence, markup=False, soft_wrap=True)
 
     with ProgressView(console) as view:
 
@@ -147,7 +152,9 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
             place.begin(keep=start is not None)
             place.save_state(state, picture.sha256)
 
-        result = search(place.setup, photo=picture, start=start, on_progress=on_progress, on_state=on_state)
+        result = search(
+            place.setup, photo=picture, start=start, light_guess=guess, on_progress=on_progress, on_state=on_state
+        )
         place.begin(keep=start is not None)  # a resumed fit that was complete reports no progress
         place.finish(result)
         try:

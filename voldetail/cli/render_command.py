@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from voldetail.scene.setup import CameraSetup
 
 DETAIL_HELP = "A detail file, as fit makes it."
+RENDER_LIGHTS = "AZ,EL in degrees, x,y,z or point:x,y,z"
 MESH_HELP = "plane, sphere, ellipsoid, box, cylinder, or a mesh file."
 ENVIRONMENT_BYTES = 2**30
 ENVIRONMENT_SUFFIXES = (".exr", ".hdr")
@@ -48,7 +49,7 @@ def render(
     shape: Annotated[str, typer.Argument(metavar="MESH", help=MESH_HELP)],
     out: Annotated[Path, typer.Option("--output", "-o", help="The picture: .png, .jpg or .exr (linear).")],
     light: Annotated[
-        str | None, typer.Option(help="AZ,EL in degrees, x,y,z or point:x,y,z. Default: 135,45.")
+        str | None, typer.Option(help=f"{RENDER_LIGHTS}. Default: 135,45.")
     ] = None,
     envmap: Annotated[
         Path | None, typer.Option(help="Light from an environment map (.exr or .hdr) instead.")
@@ -78,8 +79,11 @@ def render(
         raise InputError("--light and --envmap were both given; choose one.")
     if shading not in ("phong", "principled"):
         raise InputError(f"--shading {shading!r} is not known; use phong or principled.")
+    lit = parse_light(light) if light is not None else None
+    if lit is not None and lit.kind == "auto":
+        raise InputError(f"--light auto is estimated from a photo, by fit alone: give it as {RENDER_LIGHTS}.")
     options: dict[str, Any] = {
-        "light": parse_light(light) if light is not None else None,
+        "light": lit,
         "envmap": _environment(envmap) if envmap is not None else None,
         "scale": scale, "size": size(pixels), "camera": _camera(fov), "rotation": _rotation(rotation),
         "subsamples": subsamples, "samples": samples, "shading": shading, "background": background,

@@ -5,22 +5,25 @@ from __future__ import annotations
 import importlib.metadata
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import JsonValue
 
 from voldetail import __version__
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail, NoiseFloor, Provenance, bounds, rounded
 from voldetail.errors import InputError, VoldetailError
 from voldetail.files import sha256
+from voldetail.fit.autolight import resolve_light
+from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.objective import Evaluation, Objective
 from voldetail.fit.plans import Stage, default_plan, paper_plan
 from voldetail.fit.session import Progress, Session, State, Stopped, derived_seed
 from voldetail.fit.space import Space
-from voldetail.fit.target import Target, make_target
+from voldetail.fit.target import Target, load_photo_of, make_target
 from voldetail.image import Photo
 from voldetail.metric import METRICS, describe, distance
 from voldetail.metric.anisotropy import anisotropy
@@ -46,7 +49,10 @@ DETAIL_SEEDS = 4
 
 @dataclass(frozen=True)
 class FitResult:
-    """What a fit found. status says in a sentence why it ended; trace is (evaluations, best distance) as it fell."""
+    """What a fit found. status says in a sentence why it ended; trace is (evaluations, best distance) as it fell.
+
+    setup: the one that was fitted, with the direction found where its light was "auto", and then light_guess.
+    """
 
     detail: Detail
     setup: Setup
@@ -58,21 +64,26 @@ class FitResult:
     status: str
     trace: tuple[tuple[int, float], ...]
     interrupted: bool
+    light_guess: LightGuess | None = None
 
 
 def fit(
-    setup: Setup, *, photo: Photo | None = None, start: State | None = None,
+    setup: Setup, *, photo: Photo | None = None, start: State | None = None, light_guess: LightGuess | None = None,
     on_progress: Callable[[Progress], None] = lambda progress: None,
     on_state: Callable[[State], None] = lambda state: None,
 ) -> FitResult:
     """Return the Detail whose rendering has the texture statistics of the photo (GD10 section 7).
 
     ``start`` continues an interrupted fit from one of the states handed to ``on_state``. Ctrl-C ends the search with
-    the best so far. Raises InputError for input that cannot be used.
+    the best so far. A light "auto" is estimated first; ``light_guess`` tells that the setup's light was estimated so
+    already, for the record. Raises InputError for input that cannot be used.
     """
     if setup.fit.metric not in METRICS:
         raise InputError(f"There is no metric {setup.fit.metric!r}: choose one of {', '.join(METRICS)}.")
     mitsuba()
+    photo = photo or load_photo_of(setup)
+    setup, found = resolve_light(setup, photo)
+    light_guess = found or light_guess
     target = make_target(setup, photo)
     session, stages = _session(setup, target, start, on_progress, on_state)
     status, interrupted = "the plan was carried out", False
@@ -95,9 +106,9 @@ def fit(
         raise VoldetailError("The fit was stopped before a first detail was found: let it run a little longer.")
     final = _finish(session)
     return FitResult(
-        detail=_sign(setup, target, session, final, status), setup=setup, target=target, picture=final.picture,
+        detail=_sign(setup, target, session, final, status, light_guess), setup=setup, target=target, picture=final.picture,
         distance=final.distance, evaluations=session.evaluations, seconds=session.seconds, status=status,
-        trace=tuple(session.trace), interrupted=interrupted,
+        trace=tuple(session.trace), interrupted=interrupted, light_guess=light_guess,
     )
 
 
@@ -171,10 +182,15 @@ def _finish(session: Session) -> Evaluation:
     return min((session.fine.evaluate(details[0], seed) for seed in seeds), key=lambda e: e.score)
 
 
-def _sign(setup: Setup, target: Target, session: Session, final: Evaluation, status: str) -> Detail:
+def _sign(
+    setup: Setup, target: Target, session: Session, final: Evaluation, status: str, light_guess: LightGuess | None
+) -> Detail:
     """Return the detail with its noise floor and provenance."""
     other = session.fine.evaluate(final.detail, derived_seed(session.root_seed, "floor"))
     floor = _floor(final, other, setup.fit.metric)
+    settings: dict[str, JsonValue] = {"root_seed": setup.seed, "status": status, "noise_seeds": setup.fit.seeds}
+    if light_guess is not None:
+        settings["light_estimated"] = dict(asdict(light_guess))
     version = importlib.metadata.version
     provenance = Provenance(
         voldetail=__version__, created=datetime.now(UTC).isoformat(timespec="seconds"), photo=setup.photo.name,
@@ -183,7 +199,7 @@ def _sign(setup: Setup, target: Target, session: Session, final: Evaluation, sta
         light=light_text(setup.light), proxy=setup.proxy.kind, solver=setup.fit.solver, metric=setup.fit.metric,
         evaluations=session.evaluations, seconds=round(session.seconds, 2), distance=final.distance,
         mitsuba=version("mitsuba"), drjit=version("drjit"), numpy=version("numpy"),
-        settings={"root_seed": setup.seed, "status": status, "noise_seeds": setup.fit.seeds},
+        settings=settings,
     )
     named = final.detail.model_copy(
         update={

@@ -143,6 +143,7 @@ class Space:
         """Return (lower, upper, logarithmic) of a number."""
         if name.startswith("shape."):
             return -SHAPE_RANGE, SHAPE_RANGE, False
+        specks = min(self.finest, bounds("reflectance.speckle_scale")[1])
         own = {
             "noise.scale": self.scale, "roughness": self.roughness, "stone_height": STONE_HEIGHT,
             "stone_stretch": STONE_STRETCH,
@@ -150,7 +151,7 @@ class Space:
             "noise.elongation": ELONGATION, "noise.size_spread": SIZE_SPREAD, "noise.anisotropy": self.anisotropy,
             "noise.stripe_frequency": self.stripes, "reflectance.height_albedo": HEIGHT_ALBEDO,
             "reflectance.cell_albedo": CELL_ALBEDO, "reflectance.speckle": SPECKLE,
-            "reflectance.speckle_scale": (self.finest / FINEST_SPECKS, self.finest),
+            "reflectance.speckle_scale": (specks / FINEST_SPECKS, specks),
         }.get(name)
         low, high = own or bounds(name)
         return low, high, name in LOGARITHMIC or (name.startswith("noise.") and parameter(name).scale == "log")

@@ -187,7 +187,8 @@ def _candidate(record: _CandidateRecord, setup: Setup, where: str) -> Candidate:
             raise ValueError(kind.fold)
         # A detail that can be made is one that can be searched. The bounds do not matter here, only that no
         # octave is too fine for the space and so left out before it is checked.
-        Space(setup.domain, (1.0, 2.0), 1e30, setup.amplitude).decode(kind, vector)
+        plain = setup.fit.solver == "paper"
+        Space(setup.domain, (1.0, 2.0), 1e30, setup.amplitude, plain=plain).decode(kind, vector)
     except (ValueError, TypeError, OverflowError):
         raise InputError(
             f"{where} holds a candidate that this setup cannot have; start again without --resume."

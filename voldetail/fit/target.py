@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 from voldetail.errors import InputError
-from voldetail.fit.zone import default_zone
+from voldetail.fit.zone import check_zone, default_zone
 from voldetail.image import Photo, load_mask, load_photo, luminance, resize
 from voldetail.metric import Descriptor, describe, distance
 from voldetail.scene.build import faces_camera
@@ -81,12 +81,8 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
     if photo.opaque is not None:
         mask = mask & photo.opaque
     zone = setup.photo.zone or default_zone(luminance(photo.pixels), mask, setup.photo.resolution)
+    check_zone(zone, (rows, columns))
     x, y, w, h = zone
-    if x + w > columns or y + h > rows:
-        raise InputError(
-            f"The zone {x},{y},{w},{h} reaches outside the photo of {columns} x {rows} pixels:"
-            " x + width and y + height must stay within it."
-        )
     factor = setup.photo.resolution / max(w, h)
     size = (max(1, round(h * factor)), max(1, round(w * factor)))
     pixels = resize(photo.pixels[y : y + h, x : x + w], size)

@@ -55,6 +55,17 @@ def default_zone(luminance: NDArray[np.float32], mask: NDArray[np.bool_], resolu
     return chosen[0], chosen[1], side, side
 
 
+def check_zone(zone: Zone, shape: tuple[int, int]) -> None:
+    """Raise InputError where ``zone`` reaches outside a photo of ``shape`` (rows, columns)."""
+    x, y, w, h = zone
+    rows, columns = shape
+    if x + w > columns or y + h > rows:
+        raise InputError(
+            f"The zone {x},{y},{w},{h} reaches outside the photo of {columns} x {rows} pixels:"
+            " x + width and y + height must stay within it."
+        )
+
+
 def main_wavelength(luminance: NDArray[np.float32]) -> float:
     """Return the wavelength in pixels about which the texture's energy lies.
 

@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
+from voldetail.errors import InputError
+from voldetail.scene.lights_text import FORMS_GIVEN
 from voldetail.scene.setup import Light
 
 FOOT_BLUR = 0.06
@@ -66,11 +68,16 @@ class Lamp:
 
 
 def lamp_of(light: Light, luminance: NDArray[np.float32] | None = None) -> Lamp:
-    """Return the Lamp for a Light of a Setup; a flash without a foot is over the brightest part of ``luminance``."""
+    """Return the Lamp for a Light of a Setup; a flash without a foot is over the brightest part of ``luminance``.
+
+    Raises InputError for the light "auto", which only a fit can make a direction of.
+    """
     if light.kind == "directional":
         return Lamp(direction=light.direction, strength=light.strength)
     if light.kind == "point":
         return Lamp(position=light.position, strength=light.strength)
+    if light.kind == "auto":
+        raise InputError(f"The light auto is estimated from a photo, by fit alone: give it as {FORMS_GIVEN}.")
     u, v = light.foot or (flash_foot(luminance) if luminance is not None else (0.5, 0.5))
     rows, columns = luminance.shape if luminance is not None else (1, 1)
     unit = 2.0 / max(rows, columns)

@@ -20,10 +20,10 @@ _Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class Light(Record):
-    """The light: a `direction` (made a unit vector), a `position`, or a phone's flash at the camera."""
+    """The light: a `direction` (made a unit vector), a `position`, a phone's flash at the camera, or not known yet."""
 
-    kind: Literal["directional", "point", "flash"] = Field(
-        default="directional", description="The kind of light."
+    kind: Literal["directional", "point", "flash", "auto"] = Field(
+        default="directional", description="The kind of light; auto is estimated from the photo by a fit."
     )
     direction: Vector | None = Field(
         default=None,
@@ -77,7 +77,8 @@ class Light(Record):
         return self
 
 
-FORMS = "AZ,EL in degrees, x,y,z, flash, flash@height, flash@u,v, flash@u,v,height or point:x,y,z"
+FORMS_GIVEN = "AZ,EL in degrees, x,y,z, flash, flash@height, flash@u,v, flash@u,v,height or point:x,y,z"
+FORMS = FORMS_GIVEN + ", or auto to have it estimated"
 
 
 def direction_of(azimuth: float, elevation: float) -> Vector:
@@ -101,8 +102,8 @@ def parse_light(text: str) -> Light:
     Raises InputError for another form, a wrong count, NaN, a zero vector or a light behind the surface.
     """
     word = text.strip()
-    if word == "flash":
-        return _light(text, kind="flash")
+    if word in ("flash", "auto"):
+        return _light(text, kind=word)
     if word.startswith("flash@"):
         numbers = _numbers(text, word.removeprefix("flash@"), (1, 2, 3))
         foot = {"foot": tuple(numbers[:2])} if len(numbers) > 1 else {}
@@ -133,6 +134,8 @@ def light_text(light: Light) -> str:
         return ",".join(f"{a:.7g}" for a in angles_of(light.direction))
     if light.position:
         return "point:" + ",".join(f"{a:.7g}" for a in light.position)
+    if light.kind == "auto":
+        return "auto"
     if light.foot:
         return f"flash@{light.foot[0]:.7g},{light.foot[1]:.7g},{light.height:.7g}"
     return f"flash@{light.height:.7g}"

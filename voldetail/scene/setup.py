@@ -196,7 +196,7 @@ class Setup(Record):
     camera: CameraSetup = Field(default_factory=CameraSetup, description="The camera.")
     light: Light = Field(
         description="The light in the photo.",
-        json_schema_extra={"allowed": '"AZ,EL" in degrees, "x,y,z", "flash", "point:x,y,z", or a table'},
+        json_schema_extra={"allowed": '"AZ,EL" in degrees, "x,y,z", "flash", "point:x,y,z", "auto", or a table'},
     )
     amplitude: float | None = Field(
         default=None,

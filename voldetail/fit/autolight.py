@@ -1,0 +1,43 @@
+"""The light "auto" of a Setup, resolved: guessed from the photo once, before anything else uses it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from voldetail.errors import InputError
+from voldetail.fit.lightguess import FLOOR, LightGuess, guess_light
+from voldetail.fit.zone import check_zone
+from voldetail.image import Photo, load_mask, luminance
+from voldetail.scene.lights_text import FORMS_GIVEN, direction_of
+from voldetail.scene.setup import Light, Setup
+
+
+def resolve_light(setup: Setup, photo: Photo) -> tuple[Setup, LightGuess | None]:
+    """Return ``setup`` with the direction that its photo shows in place of "auto", and the LightGuess.
+
+    Another light is left alone, and there is no guess. The same photo, mask and zone always give the same direction.
+    Raises InputError where the proxy is no plane facing the camera, or the photo does not show its light.
+    """
+    if setup.light.kind != "auto":
+        return setup, None
+    if setup.proxy.kind != "plane" or any(setup.proxy.rotation):
+        raise InputError(
+            f"The light auto is for a plane that faces the camera, and the proxy is another: give --light as {FORMS_GIVEN}."
+        )
+    rows, columns = photo.pixels.shape[:2]
+    mask = load_mask(setup.mask, (rows, columns)) if setup.mask else np.ones((rows, columns), dtype=bool)
+    if photo.opaque is not None:
+        mask = mask & photo.opaque
+    # Without a zone the whole photo counts: more bumps tell more.
+    zone = setup.photo.zone or (0, 0, columns, rows)
+    check_zone(zone, (rows, columns))
+    x, y, w, h = zone
+    part = (slice(y, y + h), slice(x, x + w))
+    guess = guess_light(luminance(photo.pixels)[part], mask[part])
+    if guess.confidence < FLOOR:
+        raise InputError(
+            f"The light of {setup.photo.name} cannot be told from its gradients (confidence {guess.confidence:.2f}, at least"
+            f" {FLOOR:g} is needed): give --light as {FORMS_GIVEN}."
+        )
+    light = Light(direction=direction_of(guess.azimuth, guess.elevation), strength=setup.light.strength)
+    return setup.model_copy(update={"light": light}), guess
