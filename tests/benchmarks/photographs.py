@@ -58,10 +58,10 @@ PHOTOGRAPHS = (
     Photograph("sandy_lichen", "photos/flash_train_2041/flash.jpg", "flash", "flash at the camera", False),
     Photograph("sand_ripples", "photos/ns_sand_ripples/photo.jpg", "90,30", "one light, direction guessed", False),
     Photograph("bark", "photos/ns_bark/photo.jpg", "180,40", "side light, direction guessed", False),
-    Photograph("plaster", "multilight/mgan_wall-plaster-green/mosaic_3x3.jpg", "point:-0.605,0.691,1.57",
-               "flash, position from lights.json", False, zone=(128, 128, 768, 768)),
-    Photograph("leather", "multilight/mgan_leather-darkbrown/mosaic_3x3.jpg", "point:-0.557,0.695,1.57",
-               "flash, position from lights.json", False, zone=(64, 64, 384, 384)),
+    Photograph("plaster", "multilight/mgan_wall-plaster-green/mosaic_3x3.jpg", "flash@0.1975,0.1545,0.785",
+               "flash at the camera, foot and height from lights.json", False, zone=(128, 128, 768, 768)),
+    Photograph("leather", "multilight/mgan_leather-darkbrown/mosaic_3x3.jpg", "flash@0.2215,0.1525,0.785",
+               "flash at the camera, foot and height from lights.json", False, zone=(64, 64, 384, 384)),
 )
 
 
@@ -111,7 +111,7 @@ def overview(folder: Path, names: tuple[str, ...]) -> None:
     page = Image.new("RGB", (2 * width + 24, (len(tiles) + 1) // 2 * (height + 12)), "white")
     for index, tile in enumerate(tiles):
         page.paste(tile, ((index % 2) * (width + 24), index // 2 * (height + 12)))
-    page.save(folder / "overview.png", optimize=True)
+    page.quantize(192, dither=Image.Dither.NONE).save(folder / "overview.png", optimize=True)
 
 
 def main() -> None:
@@ -129,8 +129,11 @@ def main() -> None:
             continue
         records.append(run(photograph, arguments.output, arguments.unshown))
         print(json.dumps(records[-1]), flush=True)
-    if not arguments.only:
-        write_text(arguments.output / "fits.json", json.dumps(records, indent=1) + "\n")
+    table = arguments.output / "fits.json"
+    known = {record["name"]: record for record in json.loads(table.read_text())} if table.exists() else {}
+    known |= {record["name"]: record for record in records}
+    ordered = [known[photograph.name] for photograph in PHOTOGRAPHS if photograph.name in known]
+    write_text(table, json.dumps(ordered, indent=1) + "\n")
     overview(arguments.output, OVERVIEW)
 
 
