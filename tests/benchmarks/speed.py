@@ -14,10 +14,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import drjit as dr
 import numpy as np
 
-from voldetail.backend import mitsuba
+from voldetail.backend import mitsuba  # before Dr.Jit, which would pick an LLVM of its own
 from voldetail.detail import with_values
 from voldetail.files import write_text
 from voldetail.fit import fit
@@ -31,6 +30,8 @@ from voldetail.metric import describe, distance
 from voldetail.render import components
 from voldetail.scene.build import build
 from voldetail.scene.setup_file import setup_from
+
+import drjit as dr  # isort: skip
 
 REPEATS = 24
 
