@@ -19,13 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.benchmarks.recovery import photo_of, truth_of
+from tests.benchmarks.relit import SHARED
 from voldetail.backend import mitsuba
 from voldetail.files import write_text
 from voldetail.fit.lightguess import FAIRLY_SURE, FLOOR, guess_light
 from voldetail.image import load_photo, luminance
 from voldetail.scene.lights_text import angles_of, direction_of
 
-SHARED = Path(__file__).resolve().parents[3] / "shared" / "data"
 RENDERED = 100
 NEAR = 30.0  # degrees: an azimuth this near is a hit
 MOSAIC_HEIGHT = 2.35  # tile widths, the middle of the range in lights.json

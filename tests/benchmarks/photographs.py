@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from tests.benchmarks.relit import SHARED
 from voldetail.apply import gallery
 from voldetail.detail import save_detail
 from voldetail.files import write_text
@@ -24,8 +25,6 @@ from voldetail.fit import fit
 from voldetail.image import resize, save_image
 from voldetail.report import write_report
 from voldetail.scene.setup_file import setup_from
-
-SHARED = Path(__file__).resolve().parents[3] / "shared" / "data"
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from scipy.ndimage import binary_erosion, gaussian_filter, map_coordinates
 from voldetail.backend import mitsuba
 from voldetail.detail import Reflectance
 from voldetail.fit.reflectance import solve
-from voldetail.fit.target import Target
+from voldetail.fit.target import Target, halves_apart
 from voldetail.image import to_srgb
 from voldetail.metric import describe, distance
 from voldetail.render import Components, components
@@ -43,13 +43,12 @@ class Yardstick:
 
     def __init__(self, luminance: Picture, mask: Mask, metrics: Sequence[str]) -> None:
         self.mask = mask
-        half = luminance.shape[1] // 2
-        left, right = np.s_[:, :half], np.s_[:, -half:]
         self._references = {metric: describe(luminance, mask, metric=metric) for metric in metrics}
         self.halves: dict[str, float] = {}
         for metric in metrics:
-            one = describe(luminance[left], mask[left], metric=metric)
-            self.halves[metric] = distance(one, describe(luminance[right], mask[right], like=one))
+            halves = halves_apart(luminance, mask, metric)
+            assert halves is not None, "the zone is too small to be cut in halves"
+            self.halves[metric] = halves
 
     def ratios(self, luminance: Picture) -> dict[str, float]:
         """Return the distance of another picture by each metric, in units of the halves' own."""

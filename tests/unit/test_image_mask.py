@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 
 from voldetail.errors import InputError
-from voldetail.image import load_mask
+from voldetail.image import load_mask, resize_mask
 
 SHAPE = (40, 50)
 
@@ -92,3 +92,13 @@ def test_transparent_pixels_are_not_used(tmp_path, disc):
 def test_a_missing_mask_is_called_a_mask(tmp_path):
     with pytest.raises(InputError, match=r"The mask .* does not exist"):
         load_mask(tmp_path / "m.png", SHAPE)
+
+
+def test_a_reduced_mask_holds_what_lies_wholly_inside():
+    mask = np.zeros((12, 12), bool)
+    mask[:, 4:] = True
+    assert np.array_equal(resize_mask(mask, (12, 12)), mask)
+    small = resize_mask(mask, (4, 4))
+    assert small[:, 2:].all()  # pixels 6 to 11, away from the edge
+    assert not small[:, :1].any()
+    assert resize_mask(np.ones((9, 7), bool), (4, 3)).all()

@@ -72,7 +72,7 @@ def compare(
 
 
 def _read(name: str, mask: Path | None, resolution: int | None) -> _Picture:
-    from voldetail.image import load_mask, load_photo, luminance, resize
+    from voldetail.image import load_mask, load_photo, luminance, resize, resize_mask
 
     photo = load_photo(_path(name))
     used = load_mask(mask, photo.pixels.shape[:2]) if mask is not None else None
@@ -84,7 +84,7 @@ def _read(name: str, mask: Path | None, resolution: int | None) -> _Picture:
         factor = resolution / max(rows, columns)
         shape = (max(1, round(rows * factor)), max(1, round(columns * factor)))
         light = resize(light, shape)
-        used = None if used is None else resize(used.astype(np.float32), shape) > 0.999
+        used = None if used is None else resize_mask(used, shape)
     if light.size > MOST_PIXELS:
         raise InputError(
             f"{name} has {columns} x {rows} pixels, too many to compare; give --resolution, e.g. 1000."

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from voldetail.errors import InputError
 from voldetail.fit.lightguess import FLOOR, LightGuess, guess_light
+from voldetail.fit.target import mask_of
 from voldetail.fit.zone import check_zone
-from voldetail.image import Photo, load_mask, luminance
+from voldetail.image import Photo, luminance
 from voldetail.scene.lights_text import FORMS_GIVEN, direction_of
 from voldetail.scene.setup import Light, Setup
 
@@ -25,9 +24,7 @@ def resolve_light(setup: Setup, photo: Photo) -> tuple[Setup, LightGuess | None]
             f"The light auto is for a plane that faces the camera, and the proxy is another: give --light as {FORMS_GIVEN}."
         )
     rows, columns = photo.pixels.shape[:2]
-    mask = load_mask(setup.mask, (rows, columns)) if setup.mask else np.ones((rows, columns), dtype=bool)
-    if photo.opaque is not None:
-        mask = mask & photo.opaque
+    mask = mask_of(setup, photo)
     # Without a zone the whole photo counts: more bumps tell more.
     zone = setup.photo.zone or (0, 0, columns, rows)
     check_zone(zone, (rows, columns))

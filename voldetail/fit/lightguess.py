@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter, uniform_filter
 
 from voldetail.fit.zone import main_wavelength
-from voldetail.image import resize
+from voldetail.image import resize, resize_mask
 
 Picture = NDArray[np.float64]
 
@@ -154,8 +154,7 @@ def _reduced(
     if factor >= 1:
         return light, use
     size = (max(1, round(light.shape[0] * factor)), max(1, round(light.shape[1] * factor)))
-    both = resize(np.stack([light, use, use], axis=2).astype(np.float32), size).astype(np.float64)
-    return both[..., 0], both[..., 1] > 0.999
+    return resize(light, size).astype(np.float64), resize_mask(use, size)
 
 
 def _blurred(light: Picture, use: NDArray[np.bool_], sigma: float) -> Picture:

@@ -13,7 +13,7 @@ from voldetail.detail import Detail
 from voldetail.errors import InputError
 from voldetail.fit.reflectance import solve
 from voldetail.fit.target import Target
-from voldetail.image import resize
+from voldetail.image import resize, resize_mask
 from voldetail.metric import Descriptor, describe, distance
 from voldetail.render import SHININESS, Components, components
 from voldetail.scene.heightfield import HeightField
@@ -23,7 +23,7 @@ UNUSABLE = 1e3
 """Distance of a picture that cannot be compared (the surface left the mask): far, but a number for the search."""
 
 COVERED = 0.999
-"""Share of a pixel that has to be surface, or inside the mask, for it to count: all of it, but for rounding."""
+"""Share of a pixel that has to be surface for it to count: all of it, but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class Objective:
     def _reduced_distance(self, reduced: Target, picture: NDArray[np.float32], mask: NDArray[np.bool_]) -> float:
         used = reduced.mask
         if not mask.all():
-            used = used & (resize(mask.astype(np.float32), used.shape) > COVERED)
+            used = used & resize_mask(mask, used.shape)
         small = resize(picture, used.shape)
         return distance(reduced.descriptor, describe(small, None if used.all() else used, like=reduced.descriptor))
 

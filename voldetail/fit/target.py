@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter
 
 from voldetail.errors import InputError
 from voldetail.fit.zone import check_zone, default_zone
-from voldetail.image import Photo, load_mask, load_photo, luminance, resize
+from voldetail.image import Photo, load_mask, load_photo, luminance, resize, resize_mask
 from voldetail.metric import Descriptor, describe, distance
 from voldetail.scene.build import faces_camera
 from voldetail.scene.lamp import Lamp, lamp_of
@@ -50,9 +50,8 @@ class Target:
     def reduced(self, metric: str, size: tuple[int, int]) -> Target:
         """Return the same target at fewer pixels (rows, columns), for the coarse pass."""
         pixels = resize(self.pixels, size)
-        share = resize(np.repeat(self.mask[..., None].astype(np.float32), 3, axis=2), size)[..., 0]
         light = luminance(pixels)
-        mask = share > 0.999
+        mask = resize_mask(self.mask, size)
         return Target(
             self.photo, pixels, light, mask, self.shape, self.zone, self.lamp, self.tint,
             describe(light, mask, metric=metric), None, self.white,
@@ -70,6 +69,13 @@ def load_photo_of(setup: Setup) -> Photo:
     return load_photo(path, encoding=setup.photo.encoding)
 
 
+def mask_of(setup: Setup, photo: Photo) -> NDArray[np.bool_]:
+    """Return which pixels (H, W) of the whole photo are used: the mask's, where they are opaque."""
+    rows, columns = photo.pixels.shape[:2]
+    mask = load_mask(setup.mask, (rows, columns)) if setup.mask else np.ones((rows, columns), dtype=bool)
+    return mask if photo.opaque is None else mask & photo.opaque
+
+
 def make_target(setup: Setup, photo: Photo | None = None) -> Target:
     """Return the Target of a Setup.
 
@@ -77,18 +83,14 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
     """
     photo = photo or load_photo_of(setup)
     rows, columns = photo.pixels.shape[:2]
-    mask = load_mask(setup.mask, (rows, columns)) if setup.mask else np.ones((rows, columns), dtype=bool)
-    if photo.opaque is not None:
-        mask = mask & photo.opaque
+    mask = mask_of(setup, photo)
     zone = setup.photo.zone or default_zone(luminance(photo.pixels), mask, setup.photo.resolution)
     check_zone(zone, (rows, columns))
     x, y, w, h = zone
     factor = setup.photo.resolution / max(w, h)
     size = (max(1, round(h * factor)), max(1, round(w * factor)))
     pixels = resize(photo.pixels[y : y + h, x : x + w], size)
-    inside = mask[y : y + h, x : x + w]
-    share = resize(np.repeat(inside[..., None].astype(np.float32), 3, axis=2), size)[..., 0]
-    used = share > 0.999
+    used = resize_mask(mask[y : y + h, x : x + w], size)
     if not used.any():
         raise InputError("The mask leaves nothing of the zone to compare: use a larger mask or another --zone.")
     lamp = lamp_of(setup.light, luminance(photo.pixels))
@@ -103,7 +105,7 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
     return Target(
         photo=photo, pixels=pixels, luminance=light, mask=used, shape=(rows, columns), zone=zone,
         lamp=lamp, tint=(float(tint[0]), float(tint[1]), float(tint[2])),
-        descriptor=descriptor, photo_halves=_halves(light, used, setup.fit.metric),
+        descriptor=descriptor, photo_halves=halves_apart(light, used, setup.fit.metric),
         white=max(1.0, float(light.max())),
     )
 
@@ -126,7 +128,7 @@ def _with_falloff_of(
     return np.asarray(np.minimum(pixels * np.clip(gain, 0.25, 4.0)[..., None], 1.0), dtype=np.float32)
 
 
-def _halves(light: NDArray[np.float32], mask: NDArray[np.bool_], metric: str) -> float | None:
+def halves_apart(light: NDArray[np.float32], mask: NDArray[np.bool_], metric: str) -> float | None:
     """Return the distance between the left and the right half, described like the left; None where one is too small."""
     half = light.shape[1] // 2
     try:

@@ -3,7 +3,7 @@
 from voldetail.image.load import MIN_SIDE, Photo, load_photo
 from voldetail.image.mask import load_mask
 from voldetail.image.pyramid import gaussian_pyramid, masked_pyramid
-from voldetail.image.resize import resize
+from voldetail.image.resize import resize, resize_mask
 from voldetail.image.samples import MAX_PIXELS
 from voldetail.image.save import check_suffix, save_exr, save_image, save_jpeg, save_png
 from voldetail.image.srgb import luminance, to_linear, to_srgb
@@ -19,6 +19,7 @@ __all__ = [
     "luminance",
     "masked_pyramid",
     "resize",
+    "resize_mask",
     "save_exr",
     "save_image",
     "save_jpeg",

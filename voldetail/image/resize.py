@@ -6,6 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+WHOLE = 0.999
+"""Share of a pixel that has to be inside for it to count as inside: all of it, but for rounding."""
+
 
 def resize(image: NDArray[Any], size: tuple[int, int]) -> NDArray[np.float32]:
     """Resample an image (H, W) or (H, W, C) to `size` = (height, width), float32, within the range of its values.
@@ -22,6 +25,11 @@ def resize(image: NDArray[Any], size: tuple[int, int]) -> NDArray[np.float32]:
     # The cubic overshoots at edges; light below zero or brighter than the photo would be an invention.
     result = np.clip(result, source.min(), source.max())
     return np.ascontiguousarray(result[..., 0] if source.ndim == 2 else result)
+
+
+def resize_mask(mask: NDArray[np.bool_], size: tuple[int, int]) -> NDArray[np.bool_]:
+    """Resample a mask (H, W) to `size` = (height, width): True where a new pixel lies wholly inside it."""
+    return np.asarray(resize(mask, size) > WHOLE)
 
 
 def _plane(plane: NDArray[np.float32], height: int, width: int) -> NDArray[np.float32]:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.errors import InputError
-from voldetail.image import resize
+from voldetail.image import resize, resize_mask
 from voldetail.metric.layers import Layers, Mask, layers
 
 ACCEPTED_EXPOSURE = 1.1
@@ -42,8 +42,7 @@ def noise_floors(
 def _pairs(image: NDArray[np.float32], use: Mask, picture: Layers) -> Iterator[tuple[Layers, Layers]]:
     yield picture, layers(image * np.float32(ACCEPTED_EXPOSURE), use)
     smaller = tuple(round(side * ACCEPTED_SCALE) for side in image.shape)
-    kept = resize(use.astype(np.float32), smaller) > 0.999
-    for one, other in ((None, (resize(image, smaller), kept)), *_halves(image, use)):
+    for one, other in ((None, (resize(image, smaller), resize_mask(use, smaller))), *_halves(image, use)):
         try:
             yield (picture if one is None else layers(*one)), layers(*other)
         except InputError:
