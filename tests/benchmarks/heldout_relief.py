@@ -27,6 +27,7 @@ from tests.benchmarks.relit import (
     SHARED,
     Picture,
     Yardstick,
+    height_record,
     heights_of,
     look,
     markdown,
@@ -178,7 +179,10 @@ def run(scan: Scan, evaluations: int | None, sheets: Path | None) -> dict[str, A
     if sheets is not None:
         save_sheet(sheets / f"heldout_relief_{scan.name}.png", [[picture for row in rows for picture in row]])
     true_heights = heights_of(truth)
+    needed = float(true_heights.std() / heights_of(fitted).std())
+    assert result.heights is not None
     return {
+        "heights": height_record(result.heights, result.detail.relief.amplitude, needed),
         "scan": scan.name, "credit": scan.credit, "light": LIGHT, "evaluations": result.evaluations,
         "seconds": round(result.seconds, 1), "true_std": round(float(true_heights.std()), 5),
         "true_slope": round(float(np.sqrt(np.mean(slopes(true_heights, truth.step) ** 2))), 3),

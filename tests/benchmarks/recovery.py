@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tests.benchmarks.relit import height_record, heights_of
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail, Reflectance, rounded
 from voldetail.files import write_text
@@ -25,6 +26,7 @@ from voldetail.image import Photo, luminance, save_png, to_linear, to_srgb
 from voldetail.metric import describe, distance
 from voldetail.render import components
 from voldetail.scene.build import build
+from voldetail.scene.heightfield import HeightField
 from voldetail.scene.lamp import lamp_of
 from voldetail.scene.setup_file import setup_from
 
@@ -92,7 +94,19 @@ def run_case(name: str, solver: str, metric: str, evaluations: int | None) -> tu
         "evaluations": result.evaluations,
         "true": _numbers(truth), "found": _numbers(found),
     }
+    if result.heights is not None:
+        record["heights"] = height_record(
+            result.heights, found.relief.amplitude, deviation(truth, light) / deviation(found, light)
+        )
     return record, np.concatenate([pixels, photo_of(found, light)], axis=1)
+
+
+def deviation(detail: Detail, light: str) -> float:
+    """Return the standard deviation of the relief in scene units, which other ranks have at another amplitude."""
+    surface = build(_setup(light, "default", "combined", None), (SIDE, SIDE), (0, 0, SIDE, SIDE))
+    assert isinstance(surface, HeightField)
+    surface.update(detail)
+    return float(heights_of(surface).std())
 
 
 def _numbers(detail: Detail) -> dict[str, Any]:

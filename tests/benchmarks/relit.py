@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from scipy.ndimage import binary_erosion, gaussian_filter, map_coordinates
 
 from voldetail.backend import mitsuba
 from voldetail.detail import Reflectance
+from voldetail.fit.interval import AmplitudeInterval
 from voldetail.fit.reflectance import solve
 from voldetail.fit.target import Target, halves_apart
 from voldetail.image import to_srgb
@@ -90,6 +92,22 @@ def heights_of(surface: HeightField, margin: int = 0) -> NDArray[np.float64]:
     z = np.asarray(surface.z, dtype=np.float64).reshape(surface.rows, surface.columns)
     first, end = MARGIN - margin, MARGIN + margin + 1
     return z[first : surface.view.rows + end, first : surface.view.columns + end]
+
+
+def height_record(found: AmplitudeInterval, fitted: float, needed: float) -> dict[str, Any]:
+    """Return an interval as factors of the ``fitted`` amplitude, and whether the factor ``needed`` for the truth is inside.
+
+    needed_rise: the distance at that factor over the lowest one, the least tolerance that would have let it in.
+    """
+    factors, distances = np.array(found.amplitudes) / fitted, np.array(found.distances_any)
+    rise = float(np.interp(np.log(needed), np.log(factors), distances) / min(*found.distances, *distances))
+    ends = {key: round(value / fitted, 3) for key, value in found.ends.items()}
+    return {
+        "needed": round(needed, 3), "needed_rise": round(rise, 3), **ends,
+        "inside": ends["low"] <= needed <= ends["high"], "inside_any": ends["low_any"] <= needed <= ends["high_any"],
+        "factors": [round(float(f), 3) for f in factors], "distances": [round(d, 3) for d in found.distances],
+        "distances_any": [round(d, 3) for d in found.distances_any],
+    }
 
 
 def raise_to(surface: HeightField, heights: NDArray[np.floating]) -> None:

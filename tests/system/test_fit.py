@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 
 from tests.system.scenes import detail, setup
 from voldetail.detail import Detail
+from voldetail.detail.record import ReliefParameters
 from voldetail.errors import InputError
 from voldetail.fit import FitResult, Progress, fit
 from voldetail.fit.fitter import space_of
+from voldetail.fit.interval import amplitude_interval
 from voldetail.fit.objective import Objective
 from voldetail.fit.session import State
 from voldetail.fit.space import Kind
@@ -273,3 +275,27 @@ def test_a_second_evaluation_compiles_nothing(proxy: str) -> None:
         first = compiled(some(kind, 3))
         assert len(first) <= 1
         assert first == [] or compiled(some(kind, 3)) == []
+
+
+def test_the_true_amplitude_is_inside_its_interval_and_others_are_not() -> None:
+    scene = wanted()
+    target = make_target(scene, PHOTO)
+    objective = Objective(target, build(scene, target.shape, target.zone), specular=False)
+    seeds = [11, 12, 13]
+    heights = amplitude_interval(objective, TRUTH, seeds)
+    assert heights.low_any <= heights.low <= 0.06 <= heights.high <= heights.high_any
+    assert heights.low > 0.03
+    assert heights.high < 0.12
+    assert objective.evaluations == 0  # no part of the search
+    # Twice as high is found to be twice too high.
+    double = TRUTH.model_copy(update={"relief": ReliefParameters(amplitude=0.12)})
+    assert amplitude_interval(objective, double, seeds).high < 0.1
+
+
+def test_a_given_amplitude_has_no_interval(found: FitResult) -> None:
+    assert found.heights is not None
+    assert found.heights.low <= found.detail.relief.amplitude <= found.heights.high
+    provenance = found.detail.provenance
+    assert provenance is not None
+    assert provenance.settings["amplitude_interval"].keys() == {"low", "high", "low_any", "high_any"}  # type: ignore[union-attr]
+    assert fit(wanted(30, amplitude=0.05), photo=PHOTO).heights is None

@@ -17,9 +17,10 @@ from PIL import Image
 from voldetail.apply.gallery import Gallery
 from voldetail.detail import Detail, NoiseFloor
 from voldetail.fit.fitter import FitResult
+from voldetail.fit.interval import AmplitudeInterval
 from voldetail.image import Photo
 from voldetail.report import write_report
-from voldetail.report.facts import duration, light_words
+from voldetail.report.facts import amplitude_words, duration, light_words
 from voldetail.report.page import page
 from voldetail.scene.lights_text import parse_light
 from voldetail.scene.setup_file import setup_from
@@ -209,3 +210,22 @@ def test_durations(seconds: float, words: str) -> None:
 def test_a_report_starts_no_renderer() -> None:
     code = "import sys, voldetail.report; sys.exit(bool({'mitsuba', 'matplotlib.pyplot'} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("ends", "wanted"),
+    [
+        ((0.04, 0.06, 0.04, 0.06), "0.05 scene units; 0.04 to 0.06 would be about as near"),
+        ((0.04, 0.06, 0.03, 0.2), "0.04 to 0.06 would be about as near, 0.03 to 0.2 or more if the light were up to"),
+        ((0.0125, 0.06, 0.0125, 0.06), "0.0125 or less to 0.06"),
+    ],
+)
+def test_the_amplitude_is_told_with_its_interval(ends: tuple[float, ...], wanted: str) -> None:
+    looked = ((0.0125, 0.05, 0.2), (2.0, 1.0, 3.0), (2.0, 1.0, 3.0))
+    assert wanted in amplitude_words(result(heights=AmplitudeInterval(*ends, *looked)))
+
+
+def test_an_amplitude_without_an_interval_says_why() -> None:
+    assert "not looked at" in amplitude_words(result())
+    given = setup_from({"photo": {"path": "wall.jpg"}, "light": "135,45", "amplitude": 0.05})
+    assert amplitude_words(result(setup=given)) == "0.05 scene units, as given"

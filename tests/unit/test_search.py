@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from voldetail.fit.search import CMAES, GradientDescent, Solution, Solver, minimise
+from voldetail.fit.search import CMAES, GradientDescent, Memory, Solution, Solver, minimise
 from voldetail.fit.session import derived_seed
 
 Vector = NDArray[np.float64]
@@ -31,7 +31,7 @@ class Counting:
 
 
 def run(solver: Solver, budget: int, evaluate: Counting, **other: object) -> Solution:
-    return minimise(solver, evaluate, np.full(4, 0.5), spread=0.2, seed=3, budget=budget, **other)  # type: ignore[arg-type]
+    return minimise(solver, evaluate, np.full(4, 0.5), memory=Memory(0.2), seed=3, budget=budget, **other)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("solver", SOLVERS, ids=lambda s: type(s).__name__)
@@ -74,7 +74,7 @@ def test_the_same_seed_is_the_same_search(solver: Solver) -> None:
 def test_another_seed_is_another_search() -> None:
     start = np.full(4, 0.5)
     first, second = (
-        minimise(CMAES(10), Counting(), start, spread=0.2, seed=seed, budget=50).vector for seed in (1, 2)
+        minimise(CMAES(10), Counting(), start, memory=Memory(0.2), seed=seed, budget=50).vector for seed in (1, 2)
     )
     assert (first != second).any()
 
@@ -105,7 +105,7 @@ def test_numbers_that_wrap_may_leave_the_box() -> None:
         return float(1 - np.cos(2 * np.pi * (vector[0] - 0.95)) + (vector[1] - 0.5) ** 2)
 
     found = minimise(
-        CMAES(10, periodic=(0,)), Counting(ring), np.array([0.1, 0.5]), spread=0.1, seed=1, budget=400
+        CMAES(10, periodic=(0,)), Counting(ring), np.array([0.1, 0.5]), memory=Memory(0.1), seed=1, budget=400
     )
     assert found.vector[0] % 1.0 == pytest.approx(0.95, abs=0.02)
     assert found.vector[0] < 0.1  # the short way round, through 0
@@ -126,3 +126,24 @@ def test_derived_seeds_are_what_they_always_were() -> None:
     names = [derived_seed(root, f"noise/{i}") for root in range(20) for i in range(50)]
     assert len(set(names)) == 1000
     assert all(0 <= seed < 2**31 for seed in names)
+
+
+def test_what_a_search_learnt_serves_the_next() -> None:
+    """On a narrow valley a search that is handed the covariance gets lower than one that starts round again."""
+
+    def valley(v: Vector) -> float:
+        along, across = v[0] + v[1] - 1.0, v[0] - v[1]
+        return float(along**2 + 400.0 * (across - 0.1) ** 2 + 50.0 * (v[2] - v[3]) ** 2 + (v[2] - 0.3) ** 2)
+
+    kept, anew = [], []
+    for seed in range(5):
+        first = minimise(
+            CMAES(10), Counting(valley), np.array([0.9, 0.2, 0.8, 0.1]), memory=Memory(0.2), seed=seed, budget=150
+        )
+        assert first.memory.covariance is not None
+        assert first.memory.covariance.shape == (4, 4)
+        for memory, values in ((first.memory, kept), (Memory(first.memory.spread), anew)):
+            values.append(
+                minimise(CMAES(10), Counting(valley), first.vector, memory=memory, seed=seed + 100, budget=80).value
+            )
+    assert np.median(np.array(kept) / np.array(anew)) < 0.8

@@ -32,7 +32,9 @@ def a_state(setup: Setup, seed: int = 0) -> State:
     pool = []
     for kind in (Kind(1, 2, "gaussian", 2, np.bool_(True)), Kind(2, 3, "exponential", 1, False, "ridge")):  # type: ignore[arg-type]
         vector = random.random(len(space.names(kind))) * 1.2
-        pool.append(Candidate(kind, vector, float(random.random()), 0.1, int(random.integers(100))))
+        root = random.standard_normal((len(vector), len(vector)))
+        covariance = root @ root.T + np.eye(len(vector))
+        pool.append(Candidate(kind, vector, float(random.random()), 0.1, int(random.integers(100)), covariance))
     pool.append(Candidate(pool[0].kind, pool[0].vector, math.inf))
     return State(2, tuple(pool), 321, 12.345678901234567, ((10, 3.5), (20, 1 / 3)))
 
@@ -46,6 +48,7 @@ def same(a: State, b: State) -> bool:
     ) and all(
         (x.kind, x.value, x.spread, x.spent) == (y.kind, y.value, y.spread, y.spent)
         and np.array_equal(x.vector, y.vector)
+        and (x.covariance is y.covariance is None or np.array_equal(x.covariance, y.covariance))  # type: ignore[arg-type]
         for x, y in zip(a.pool, b.pool, strict=True)
     )
 
@@ -132,6 +135,10 @@ def _put(*keys: Any, value: Any) -> Callable[[dict[str, Any]], None]:
         _put("pool", 0, "kind", "fold", value="crumple"),
         _put("pool", 0, "kind", "surprise", value=1),
         _put("pool", 0, "spread", value=0),
+        _put("pool", 0, "covariance", value=[[1.0]]),
+        _put("pool", 0, "covariance", 0, 0, value=-1.0),
+        _put("pool", 0, "covariance", 0, 1, value=1e5),
+        _put("pool", 0, "covariance", 0, 0, value=None),
         _put("pool", value={}),
         _put("trace", value=[[1]]),
         _put("belongs", "photo", value="short"),

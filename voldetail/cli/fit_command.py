@@ -178,7 +178,7 @@ def _report(folder: Path, result: FitResult, on_step: Callable[[str], None]) -> 
 def _tell(folder: Path, result: FitResult) -> None:
     """Say what was made and how good it is."""
     from voldetail.report import PAGE_NAME, SHEET_NAME, verdict
-    from voldetail.report.facts import duration
+    from voldetail.report.facts import amplitude_words, duration
 
     console = output()
     if result.interrupted:
@@ -186,6 +186,7 @@ def _tell(folder: Path, result: FitResult) -> None:
     # On a terminal a sentence is wrapped between words; in a file it stays one line.
     wrap = not console.is_terminal
     console.print(verdict(result.distance, result.detail.noise_floor).sentence, markup=False, soft_wrap=wrap)
+    console.print(f"Amplitude {amplitude_words(result)}.", markup=False, soft_wrap=wrap)
     spent = f"{result.evaluations} pictures compared in {duration(result.seconds)}"
     console.print(f"{spent}; {result.status}.", markup=False, soft_wrap=wrap)
     for name, what in (

@@ -15,13 +15,17 @@ from voldetail.fit.space import Kind, Space, Vector, shape_of
 
 @dataclass(frozen=True)
 class Candidate:
-    """A point of the space with what is known of it: its value, the spread still to search, evaluations spent on it."""
+    """A point of the space with what is known of it: its value, the spread still to search, evaluations spent on it.
+
+    covariance: what a search from it learnt about which numbers go together, (n, n), or None.
+    """
 
     kind: Kind
     vector: Vector
     value: float = math.inf
     spread: float = 0.2
     spent: int = 0
+    covariance: Vector | None = None
 
 
 CHARACTERS = (

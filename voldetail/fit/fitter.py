@@ -18,6 +18,7 @@ from voldetail.detail import Detail, NoiseFloor, Provenance, bounds, rounded
 from voldetail.errors import InputError, VoldetailError
 from voldetail.files import sha256
 from voldetail.fit.autolight import resolve_light
+from voldetail.fit.interval import AmplitudeInterval, amplitude_interval
 from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.objective import Evaluation, Objective
 from voldetail.fit.plans import Stage, default_plan, paper_plan
@@ -42,6 +43,9 @@ FINEST_OCTAVE = 1.6
 """Pixels a cell of the finest octave must span, near the sampling limit of the mesh's one vertex a pixel."""
 
 
+INTERVAL_SEEDS = 4
+"""Noise seeds for the interval of the amplitude."""
+
 FINALISTS = 3
 DETAIL_SEEDS = 4
 """Seeds tried for the finished detail: one noise field of a few hundred cells can by chance be an odd one."""
@@ -52,6 +56,7 @@ class FitResult:
     """What a fit found. status says in a sentence why it ended; trace is (evaluations, best distance) as it fell.
 
     setup: the one that was fitted, with the direction found where its light was "auto", and then light_guess.
+    heights: the amplitudes that fit about as well; None where the user gave the amplitude or stopped the fit.
     """
 
     detail: Detail
@@ -65,6 +70,7 @@ class FitResult:
     trace: tuple[tuple[int, float], ...]
     interrupted: bool
     light_guess: LightGuess | None = None
+    heights: AmplitudeInterval | None = None
 
 
 def fit(
@@ -105,10 +111,11 @@ def fit(
     if not session.pool:
         raise VoldetailError("The fit was stopped before a first detail was found: let it run a little longer.")
     final = _finish(session)
+    heights = None if interrupted else _heights(setup, session, final)
     return FitResult(
-        detail=_sign(setup, target, session, final, status, light_guess), setup=setup, target=target, picture=final.picture,
-        distance=final.distance, evaluations=session.evaluations, seconds=session.seconds, status=status,
-        trace=tuple(session.trace), interrupted=interrupted, light_guess=light_guess,
+        detail=_sign(setup, target, session, final, status, light_guess, heights), setup=setup, target=target,
+        picture=final.picture, distance=final.distance, evaluations=session.evaluations, seconds=session.seconds,
+        status=status, trace=tuple(session.trace), interrupted=interrupted, light_guess=light_guess, heights=heights,
     )
 
 
@@ -182,8 +189,20 @@ def _finish(session: Session) -> Evaluation:
     return min((session.fine.evaluate(details[0], seed) for seed in seeds), key=lambda e: e.score)
 
 
+def _heights(setup: Setup, session: Session, final: Evaluation) -> AmplitudeInterval | None:
+    """Return how well the photo tells the amplitude, None where the user gave it, or would not wait for it."""
+    if setup.amplitude is not None or final.detail.relief.amplitude <= 0:
+        return None
+    seeds = [session.unseen_seed(index) for index in range(INTERVAL_SEEDS)]
+    try:
+        return amplitude_interval(session.fine, final.detail, seeds)
+    except KeyboardInterrupt:
+        return None
+
+
 def _sign(
-    setup: Setup, target: Target, session: Session, final: Evaluation, status: str, light_guess: LightGuess | None
+    setup: Setup, target: Target, session: Session, final: Evaluation, status: str, light_guess: LightGuess | None,
+    heights: AmplitudeInterval | None,
 ) -> Detail:
     """Return the detail with its noise floor and provenance."""
     other = session.fine.evaluate(final.detail, derived_seed(session.root_seed, "floor"))
@@ -191,6 +210,8 @@ def _sign(
     settings: dict[str, JsonValue] = {"root_seed": setup.seed, "status": status, "noise_seeds": setup.fit.seeds}
     if light_guess is not None:
         settings["light_estimated"] = dict(asdict(light_guess))
+    if heights is not None:
+        settings["amplitude_interval"] = {key: float(f"{value:.3g}") for key, value in heights.ends.items()}
     version = importlib.metadata.version
     provenance = Provenance(
         voldetail=__version__, created=datetime.now(UTC).isoformat(timespec="seconds"), photo=setup.photo.name,

@@ -18,26 +18,36 @@ Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
+class Memory:
+    """What a search hands to the next one from its end: how far to look, (n, n) covariance of the steps if it has one."""
+
+    spread: float
+    covariance: Vector | None = None
+
+
+@dataclass(frozen=True)
 class Solution:
-    """The best vector that was seen, its value, how many evaluations it took, and why the search ended."""
+    """The best vector that was seen, its value, how many evaluations it took, why the search ended, and what it learnt."""
 
     vector: Vector
     value: float
     evaluations: int
     status: str
+    memory: Memory
 
 
 class Solver(Protocol):
     """One method of search; the state it returns is its own business."""
 
-    def init(self, start: Vector, spread: float, seed: int) -> Any: ...
+    def init(self, start: Vector, memory: Memory, seed: int) -> Any: ...
     def ask(self, state: Any) -> list[Vector]: ...
     def tell(self, state: Any, vectors: Sequence[Vector], values: Sequence[float]) -> Any: ...
     def finished(self, state: Any) -> str | None: ...
+    def memory(self, state: Any) -> Memory: ...
 
 
 def minimise(
-    solver: Solver, evaluate: Callable[[Sequence[Vector], int], list[float]], start: Vector, *, spread: float,
+    solver: Solver, evaluate: Callable[[Sequence[Vector], int], list[float]], start: Vector, *, memory: Memory,
     seed: int, budget: int, on_step: Callable[[Solution], bool] = lambda solution: True,
 ) -> Solution:
     """Return the best of at most ``budget`` evaluations from ``start``.
@@ -45,7 +55,7 @@ def minimise(
     ``evaluate`` gets the vectors of one step and the step's number, so that one step can share its random numbers.
     ``on_step`` sees the best so far after each step; False ends the search.
     """
-    state = solver.init(start, spread, seed)
+    state = solver.init(start, memory, seed)
     best, best_value, count, step = start, np.inf, 0, 0
     while True:
         vectors = solver.ask(state)
@@ -54,20 +64,20 @@ def minimise(
             # A part of a step is of no use to the solver, but where it is the first one, its vectors are all there is.
             vectors = vectors[: max(budget, 1)] if count == 0 else []
         if not vectors:
-            return Solution(best, best_value, count, "the budget of evaluations was used up")
+            return Solution(best, best_value, count, "the budget of evaluations was used up", solver.memory(state))
         values = evaluate(vectors, step)
         count, step = count + len(vectors), step + 1
         lowest = int(np.argmin(values))
         if values[lowest] < best_value:
             best, best_value = np.array(vectors[lowest]), float(values[lowest])
-        if not on_step(Solution(best, best_value, count, "searching")):
-            return Solution(best, best_value, count, "the search was asked to stop")
+        if not on_step(Solution(best, best_value, count, "searching", solver.memory(state))):
+            return Solution(best, best_value, count, "the search was asked to stop", solver.memory(state))
         if short:
-            return Solution(best, best_value, count, "the budget of evaluations was used up")
+            return Solution(best, best_value, count, "the budget of evaluations was used up", solver.memory(state))
         state = solver.tell(state, vectors, values)
         ended = solver.finished(state)
         if ended:
-            return Solution(best, best_value, count, ended)
+            return Solution(best, best_value, count, ended, solver.memory(state))
 
 
 @dataclass(frozen=True)
@@ -82,14 +92,18 @@ class CMAES:
     periodic: tuple[int, ...] = ()
     tolerance: float = 1e-4
 
-    def init(self, start: Vector, spread: float, seed: int) -> Any:
+    def init(self, start: Vector, memory: Memory, seed: int) -> Any:
         lower: list[float | None] = [None if i in self.periodic else 0.0 for i in range(len(start))]
         upper: list[float | None] = [None if i in self.periodic else 1.0 for i in range(len(start))]
         options = {
             "bounds": [lower, upper], "popsize": self.population, "seed": seed % (2**31 - 2) + 1, "verbose": -9,
             "tolfun": self.tolerance, "tolx": 1e-3, "verb_log": 0, "verb_disp": 0,
         }
-        return cma.CMAEvolutionStrategy(np.clip(start, 0.02, 0.98), spread, options)
+        strategy = cma.CMAEvolutionStrategy(np.clip(start, 0.02, 0.98), memory.spread, options)
+        if memory.covariance is not None:
+            strategy.sm.C = np.array(memory.covariance)
+            strategy.sm.update_now(-1)  # its eigenvectors go with it
+        return strategy
 
     def ask(self, state: Any) -> list[Vector]:
         return [np.asarray(v) for v in state.ask()]
@@ -101,6 +115,9 @@ class CMAES:
     def finished(self, state: Any) -> str | None:
         reasons = state.stop()
         return f"the search settled ({', '.join(sorted(reasons))})" if reasons else None
+
+    def memory(self, state: Any) -> Memory:
+        return Memory(float(state.sigma), np.array(state.sm.C))
 
 
 @dataclass
@@ -125,8 +142,8 @@ class GradientDescent:
     difference: float = 0.02
     smallest: float = 2e-3
 
-    def init(self, start: Vector, spread: float, seed: int) -> DescentState:
-        return DescentState(np.array(start), np.inf, spread, None, "start")
+    def init(self, start: Vector, memory: Memory, seed: int) -> DescentState:
+        return DescentState(np.array(start), np.inf, memory.spread, None, "start")
 
     def ask(self, state: DescentState) -> list[Vector]:
         if state.phase == "start":
@@ -148,6 +165,9 @@ class GradientDescent:
         if values[lowest] < state.value:
             return DescentState(np.array(vectors[lowest]), values[lowest], state.length, None, "gradient")
         return DescentState(state.point, state.value, state.length / 4.0, state.gradient, "line")
+
+    def memory(self, state: DescentState) -> Memory:
+        return Memory(state.length)
 
     def finished(self, state: DescentState) -> str | None:
         return "the gradient's step became too small to matter" if state.length < self.smallest else None

@@ -23,7 +23,7 @@ from voldetail.errors import InputError
 from voldetail.files import sha256, write_text
 from voldetail.fit.candidates import Candidate
 from voldetail.fit.session import State
-from voldetail.fit.space import FOLDS, Kind, Space
+from voldetail.fit.space import FOLDS, Kind, Space, Vector
 from voldetail.scene.setup import Setup
 
 FORMAT = "voldetail.state"
@@ -47,6 +47,9 @@ _Unit = Annotated[
 ]  # searched in [0, 1], but angles wrap and may have gone round
 
 
+_Entry = Annotated[float, Field(ge=-1e6, le=1e6)]
+
+
 _PLAIN: dict[str, type] = {"int": int, "str": str, "bool": bool}  # NumPy's own kinds of number are not JSON
 
 
@@ -55,6 +58,7 @@ class _CandidateRecord(Record):
     vector: Annotated[tuple[_Unit, ...], Field(max_length=MOST_NUMBERS)]
     value: float | None  # null: not evaluated yet
     spread: Annotated[float, Field(gt=0, le=10)]
+    covariance: tuple[tuple[_Entry, ...], ...] | None = None
     spent: _Count
 
 
@@ -90,6 +94,7 @@ def save_state(path: Path, state: State, setup: Setup, photo_sha256: str) -> Non
             "vector": np.asarray(c.vector, dtype=float).tolist(),
             "value": float(c.value) if math.isfinite(c.value) else None,
             "spread": float(c.spread),
+            "covariance": None if c.covariance is None else np.asarray(c.covariance, dtype=float).tolist(),
             "spent": int(c.spent),
         }
         for c in state.pool
@@ -189,13 +194,26 @@ def _candidate(record: _CandidateRecord, setup: Setup, where: str) -> Candidate:
         # octave is too fine for the space and so left out before it is checked.
         plain = setup.fit.solver == "paper"
         Space(setup.domain, (1.0, 2.0), 1e30, setup.amplitude, plain=plain).decode(kind, vector)
+        covariance = _covariance(record, len(vector))
     except (ValueError, TypeError, OverflowError):
         raise InputError(
             f"{where} holds a candidate that this setup cannot have; start again without --resume."
         ) from None
     return Candidate(
-        kind, vector, math.inf if record.value is None else record.value, record.spread, record.spent
+        kind, vector, math.inf if record.value is None else record.value, record.spread, record.spent, covariance
     )
+
+
+def _covariance(record: _CandidateRecord, count: int) -> Vector | None:
+    """Return the covariance of the steps, (count, count); ValueError where it is none."""
+    if record.covariance is None:
+        return None
+    covariance = np.array(record.covariance, dtype=np.float64)
+    if covariance.shape != (count, count) or not np.allclose(covariance, covariance.T, rtol=1e-6):
+        raise ValueError(covariance.shape)
+    if np.linalg.eigvalsh(covariance)[0] <= 0:
+        raise ValueError("not positive")
+    return covariance
 
 
 def _no_constant(name: str) -> float:

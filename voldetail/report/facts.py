@@ -9,6 +9,7 @@ from voldetail.report.verdict import number
 
 if TYPE_CHECKING:
     from voldetail.fit.fitter import FitResult
+    from voldetail.fit.interval import AmplitudeInterval
     from voldetail.scene.setup import Light, Setup
 
 _SIDES = ("the right", "the upper right", "above", "the upper left", "the left", "the lower left", "below",
@@ -72,6 +73,7 @@ def facts(result: FitResult) -> list[tuple[str, str]]:
         ("Search", f"{result.evaluations} pictures compared in {duration(result.seconds)}{rate}"),
         ("Solver", f"{setup.fit.solver}, metric {setup.fit.metric}, seed {setup.seed}; {result.status}"),
         ("Distance", distance_words(result)),
+        ("Amplitude", amplitude_words(result)),
     ]
 
 
@@ -93,6 +95,25 @@ def distance_words(result: FitResult) -> str:
     if floor.other_seed is not None:
         text += f"; two seeds of the detail {number(floor.other_seed)}"
     return text
+
+
+def amplitude_words(result: FitResult) -> str:
+    """The amplitude and how well the photo tells it."""
+    amplitude, heights = result.detail.relief.amplitude, result.heights
+    if result.setup.amplitude is not None:
+        return f"{number(amplitude)} scene units, as given"
+    if heights is None:
+        return f"{number(amplitude)} scene units; how well the photo tells it was not looked at"
+    text = f"{number(amplitude)} scene units; {_span(heights.low, heights.high, heights)} would be about as near"
+    if (heights.low_any, heights.high_any) != (heights.low, heights.high):
+        text += f", {_span(heights.low_any, heights.high_any, heights)} if the light were up to 10 degrees lower or higher"
+    return text
+
+
+def _span(low: float, high: float, heights: AmplitudeInterval) -> str:
+    """An interval in words; an end beyond which nothing was looked at says so."""
+    least, most = min(heights.amplitudes) * (1 + 1e-9), max(heights.amplitudes) * (1 - 1e-9)
+    return f"{number(low)}{' or less' if low <= least else ''} to {number(high)}{' or more' if high >= most else ''}"
 
 
 def _proxy(setup: Setup) -> str:

@@ -1,0 +1,129 @@
+"""How well one photo tells the relief's amplitude: the heights whose pictures are nearly as near to it as the fit's.
+
+Shading trades height against light and albedo: twice the height under a light twice as steep, with more sky, may look much
+the same. So the fitted detail is looked at with other amplitudes, and under a light a little lower and higher than
+the one given, and its reflectance is solved anew each time. Its other numbers stay, so the interval is a lower bound of
+what is not known.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voldetail.detail import Detail, bounds
+from voldetail.fit.objective import Objective
+from voldetail.scene.lamp import Lamp
+
+FACTORS = tuple(2.0 ** (step / 2) for step in range(-4, 5))
+"""Of the fitted amplitude, a quarter to four times: more than any photo leaves open that has a shadow in it."""
+
+ELEVATIONS = (-10.0, 0.0, 10.0)
+"""Degrees that the light may be lower or higher than it was said to be; a careful guess from a photo is about as good."""
+
+TOLERANCE = 1.1
+"""Factor on the lowest distance up to which a picture still counts as near."""
+
+
+@dataclass(frozen=True)
+class AmplitudeInterval:
+    """Amplitudes in scene units whose pictures are nearly as near to the photo as the best one's.
+
+    low, high: under the light given. low_any, high_any: also under one up to 10 degrees lower or higher (the same
+    where a light has no elevation). An end at that of ``amplitudes`` is open: nothing beyond was looked at.
+    amplitudes, distances, distances_any: what was looked at, with the mean distance over seeds.
+    """
+
+    low: float
+    high: float
+    low_any: float
+    high_any: float
+    amplitudes: tuple[float, ...]
+    distances: tuple[float, ...]
+    distances_any: tuple[float, ...]
+
+    @property
+    def ends(self) -> dict[str, float]:
+        return {"low": self.low, "high": self.high, "low_any": self.low_any, "high_any": self.high_any}
+
+
+def amplitude_interval(objective: Objective, detail: Detail, seeds: Sequence[int]) -> AmplitudeInterval:
+    """Return the AmplitudeInterval of a fitted ``detail``, by pictures under each of the noise ``seeds``.
+
+    Nine pictures for each of them and each of up to three elevations of the light.
+    """
+    highest = bounds("relief.amplitude")[1]
+    factors = [f for f in FACTORS if f * detail.relief.amplitude <= highest] or [1.0]
+    lamps = list(_lamps(objective.target.lamp))
+    means = np.stack([_scores(_under(objective, lamp), detail, factors, seeds).mean(axis=1) for lamp in lamps])
+    given = means[[lamp is objective.target.lamp for lamp in lamps].index(True)]
+    amplitudes = np.array(factors) * detail.relief.amplitude
+    low, high = _ends(amplitudes, given)
+    ends_any = [_ends(amplitudes, row, float(given.min())) for row in means]
+    # The fitted one belongs to it whatever other seeds say: a short search may end beside the lowest.
+    low, high = min(low, detail.relief.amplitude), max(high, detail.relief.amplitude)
+    return AmplitudeInterval(
+        low, high, min(low, *(end[0] for end in ends_any)), max(high, *(end[1] for end in ends_any)),
+        tuple(amplitudes.tolist()), tuple(given.tolist()), tuple(means.min(axis=0).tolist()),
+    )
+
+
+def _lamps(lamp: Lamp) -> Iterator[Lamp]:
+    if lamp.direction is None:
+        yield lamp
+        return
+    x, y, z = lamp.direction
+    azimuth, elevation = math.atan2(y, x), math.degrees(math.atan2(z, math.hypot(x, y)))
+    for step in ELEVATIONS:
+        if step == 0.0:
+            yield lamp
+            continue
+        turned = math.radians(min(max(elevation + step, 1.0), 90.0))
+        level = math.cos(turned)
+        yield replace(lamp, direction=(level * math.cos(azimuth), level * math.sin(azimuth), math.sin(turned)))
+
+
+def _under(objective: Objective, lamp: Lamp) -> Objective:
+    # A new one for the given light too: these looks are no part of the search's evaluations.
+    return Objective(
+        replace(objective.target, lamp=lamp), objective.surface, specular=objective.specular,
+        subsamples=objective.subsamples, reduced=objective.reduced,
+    )
+
+
+def _scores(
+    objective: Objective, detail: Detail, factors: Sequence[float], seeds: Sequence[int]
+) -> NDArray[np.float64]:
+    """Scores (factors, seeds)."""
+    amplitude = detail.relief.amplitude
+    higher = [
+        detail.model_copy(update={"relief": detail.relief.model_copy(update={"amplitude": amplitude * factor})})
+        for factor in factors
+    ]
+    return np.array([[e.score for e in objective.evaluate_all(higher, seed)] for seed in seeds]).T
+
+
+def _ends(amplitudes: NDArray[np.float64], distances: NDArray[np.float64], best: float = math.inf) -> tuple[float, float]:
+    """Return the amplitudes about the lowest of ``distances`` between which all are near, by straight lines in the log.
+
+    ``best`` is the lowest distance under another light; a light that is nowhere near that gives an empty interval.
+    """
+    logs, lowest = np.log(amplitudes), int(np.argmin(distances))
+    allowed = TOLERANCE * min(best, float(distances[lowest]))
+    if distances[lowest] > allowed:
+        return math.inf, -math.inf
+
+    def crossing(step: int) -> float:
+        at = lowest
+        while 0 <= at + step < len(logs) and distances[at + step] <= allowed:
+            at += step
+        if not 0 <= at + step < len(logs):
+            return float(logs[at])
+        share = (allowed - distances[at]) / (distances[at + step] - distances[at])
+        return float(logs[at] + share * (logs[at + step] - logs[at]))
+
+    return math.exp(crossing(-1)), math.exp(crossing(1))
