@@ -49,13 +49,19 @@ GAIN = (0.05, 1.5)
 STONE_GAIN = (0.05, 0.4)
 """Ranges of the octaves' gain; rougher stones lose their outlines and look like cauliflower."""
 
+PLATE_HEIGHT = (0.0, 4.0)
+PLATE_TILT = (0.0, 4.0)
+PLATE_BEVEL = (0.04, 0.35)
+"""Ranges of plates; a wider bevel leaves no plate between the cracks. Tuned by eye on mud, slate, bark and gravel."""
+
 FOLD_HANDICAP = 1.2
 STRIPED_CELLS_HANDICAP = 1.15
 STONES_HANDICAP = 0.95
 PIGMENT_HANDICAP = 1.05
+PLATES_HANDICAP = 1.05
 """Factors on the distance by how often a family looks like nature where it scores like nature. A folded H, and stripes
 within single cells, fit much and look like little; stones look right where they are only almost as near; more numbers
-for pigment fit a few percent by themselves. Tuned by eye on gravel, roughcast, bark and sand."""
+for pigment or plates fit a few percent by themselves. Tuned by eye on gravel, roughcast, bark and sand."""
 
 OF_STONES = {
     "roughness": "stone_height", "noise.anisotropy": "stone_stretch", "noise.gain": "stone_gain", "shape.0": "stone_profile",
@@ -75,8 +81,9 @@ class Kind:
     """What is discrete: ranks of feature points, envelope, octaves, whether there are stripes, how H is folded.
 
     grains: the second point counts against the first, so that the noise vanishes on the border of cells. stones: the
-    highest kernel alone counts, each a body of its own shape. pigment: albedo varies with height, from grain to grain and
-    by specks. fold: "none" keeps H monotone; "ridge" is 1 - |2H - 1| of a monotone H, "billow" |2H - 1|.
+    highest kernel alone counts, each a body of its own shape. plates: cells have planes of their own. pigment: albedo
+    varies with height, from grain to grain and by specks. fold: "none" keeps H monotone; "ridge" is 1 - |2H - 1| of a
+    monotone H, "billow" |2H - 1|.
     """
 
     first: int
@@ -88,6 +95,7 @@ class Kind:
     grains: bool = False
     pigment: bool = False
     stones: bool = False
+    plates: bool = False
 
     @property
     def handicap(self) -> float:
@@ -98,6 +106,7 @@ class Kind:
                 (self.fold != "none", FOLD_HANDICAP),
                 (self.striped and (self.first, self.last) != (1, 50), STRIPED_CELLS_HANDICAP),
                 (self.stones, STONES_HANDICAP), (self.pigment, PIGMENT_HANDICAP),
+                (self.plates, PLATES_HANDICAP),
             )
             if applies
         )
@@ -131,6 +140,8 @@ class Space:
             out += ["noise.lacunarity"] if self.plain else ["noise.lacunarity", "noise.gain"]
         if kind.stones:
             out += ["noise.facets", "noise.elongation", "noise.size_spread"]
+        if kind.plates:
+            out += ["noise.cell_height", "noise.cell_tilt", "noise.bevel"]
         if kind.striped:
             out += ["noise.stripe_frequency", "noise.stripe_spread"]
         if kind.pigment:
@@ -148,6 +159,7 @@ class Space:
             "noise.scale": self.scale, "roughness": self.roughness, "stone_height": STONE_HEIGHT,
             "stone_stretch": STONE_STRETCH,
             "stone_profile": (0.0, SHAPE_RANGE), "noise.gain": GAIN, "stone_gain": STONE_GAIN,
+            "noise.cell_height": PLATE_HEIGHT, "noise.cell_tilt": PLATE_TILT, "noise.bevel": PLATE_BEVEL,
             "noise.elongation": ELONGATION, "noise.size_spread": SIZE_SPREAD, "noise.anisotropy": self.anisotropy,
             "noise.stripe_frequency": self.stripes, "reflectance.height_albedo": HEIGHT_ALBEDO,
             "reflectance.cell_albedo": CELL_ALBEDO, "reflectance.speckle": SPECKLE,
@@ -171,6 +183,8 @@ class Space:
             weights=GRAINS if kind.grains else (1.0, 1.0, 1.0), joining="highest" if kind.stones else "sum",
             facets=values.get("noise.facets", 0.0), elongation=values.get("noise.elongation", 1.0),
             size_spread=values.get("noise.size_spread", 0.0), octaves=min(kind.octaves, shown), lacunarity=lacunarity,
+            cell_height=values.get("noise.cell_height", 0.0), cell_tilt=values.get("noise.cell_tilt", 0.0),
+            bevel=values.get("noise.bevel", parameter("noise.bevel").default),
             gain=values.get("noise.gain", 1.0), stripe_frequency=values.get("noise.stripe_frequency", 0.0),
             stripe_spread=values.get("noise.stripe_spread", 0.0),
             scale=values["noise.scale"], anisotropy=values["noise.anisotropy"], angle=values["noise.angle"],
