@@ -11,24 +11,18 @@ from hypothesis import strategies as st
 
 from voldetail.detail import PAPER_NEIGHBOURS, START_CURVES, bounds, load_detail, rounded, save_detail
 from voldetail.detail.record import Detail
-from voldetail.fit.space import (
+from voldetail.fit.ranges import (
     ELONGATION,
     FOLD_HANDICAP,
-    FOLDS,
     PIGMENT_HANDICAP,
     PLATE_BEVEL,
     PLATE_HEIGHT,
     PLATE_TILT,
-    SHAPE_COUNT,
     SHAPE_RANGE,
     STONE_GAIN,
     STONE_HEIGHT,
-    Kind,
-    Space,
-    fold,
-    profile,
-    shape_of,
 )
+from voldetail.fit.space import FOLDS, SHAPE_COUNT, Kind, Space, fold, profile, shape_of
 
 SPACE = Space("solid", (1.0, 60.0), 120.0)
 KINDS = st.builds(
@@ -99,7 +93,9 @@ def test_decoding_undoes_encoding(data: st.DataObject, kind: Kind) -> None:
             values[name] = low + unit * (high - low)
         elif name == "stone_stretch":
             values[name] = detail.noise.anisotropy
-        elif name == "stone_gain":
+        elif name == "plate_dust":
+            values[name] = detail.reflectance.height_albedo
+        elif name in ("stone_gain", "plate_gain"):
             values[name] = detail.noise.gain
         elif name in ("roughness", "stone_height"):
             values[name] = detail.relief.amplitude * detail.noise.scale
