@@ -28,6 +28,10 @@ CASES = {
     "all points": {"noise.last_neighbour": 50, "noise.octaves": 3},
     "striped": {"noise.stripe_frequency": 1.5, "noise.stripe_spread": 2.0, "noise.anisotropy": 0.5, "noise.angle": 0.7},
     "grains": {"noise.weights": (1.0, -1.0, 1.0), "noise.envelope": "gaussian", "reflectance.cell_albedo": 0.4},
+    "plates": {
+        "noise.weights": (1.0, -1.0, 1.0), "noise.cell_height": 1.5, "noise.cell_tilt": 2.0, "noise.bevel": 0.15,
+        "reflectance.cell_albedo": 0.2,
+    },
     "stones": {
         "noise.joining": "highest", "noise.last_neighbour": 50, "noise.facets": 0.9, "noise.elongation": 2.0,
         "noise.size_spread": 0.4, "noise.octaves": 2, "noise.gain": 0.3, "noise.lacunarity": 3.0,
@@ -57,6 +61,7 @@ GOLDEN: dict[str, list[float]] = {
     "all points": [0.66348, 0.17368, 0.4105, 0.54784, 0.39259, 0.68606, 0.11489],
     "striped": [0.82664, 0.65124, 0.57877, 0.64959, 0.30708, 0.68838, 0.09023],
     "grains": [0.30683, 0.27084, 0.25171, 0.86966, 0.17496, 0.68204, 0.17055],
+    "plates": [0.24092, 0.58221, 0.17314, 0.92934, 0.18119, 0.6834, 0.12364],
     "stones": [0.58238, 0.32489, 0.19263, 0.49928, 0.17932, 0.66613, 0.16657],
 }
 

@@ -15,6 +15,7 @@ from voldetail.noise import grains
 from voldetail.noise import octave as constants
 from voldetail.noise.gabor import ETA, OCTAVE_SALT
 from voldetail.noise.moments import MOMENT_BLOCK, MOMENT_SALT, MOMENT_SAMPLES
+from voldetail.noise.plates import PLATE_SALT
 
 Floats = NDArray[np.float64]
 QUATERNION = [math.sqrt(2), 1.0, math.sqrt(3) / 2, (math.sqrt(5) - 1) / 2]
@@ -173,3 +174,22 @@ def relief(
     )
     z = (total - mean * weights.sum()) / (ETA * deviation * np.sqrt((weights**2).sum()))
     return np.interp(z / np.sqrt(1 + z**2), np.linspace(-1, 1, len(curve)), curve)
+
+
+def plates(x: Floats, salt: int, height: float, tilt: float, bevel: float) -> Floats:
+    """What the planes of the cells add (N,), from the borders with all cells within three of a position."""
+    dims = x.shape[1]
+    distances, vectors, words = sorted_points(x, salt, 3)
+    mixed = words[:, 0]
+    for shift, factor in ((16, True), (15, True), (16, False)):
+        mixed = mixed ^ (mixed >> np.uint32(shift))
+        mixed = mixed * np.uint32(PLATE_SALT) if factor else mixed
+    bits = mixed.astype(np.int64)
+    azimuth = 2 * np.pi * (bits % 1024) / 1024
+    z = ((bits // 1024) % 1024 + 0.5) / 512 - 1
+    direction = np.stack([np.sin(np.arccos(z)) * np.cos(azimuth), np.sin(np.arccos(z)) * np.sin(azimuth), z], -1)[:, :dims]
+    apart = np.linalg.norm(vectors[:, 1:] - vectors[:, :1], axis=-1)
+    borders = (distances[:, 1:] ** 2 - distances[:, :1] ** 2) / (2 * apart)
+    share = np.minimum(borders.min(1) / np.minimum(bevel, 1 - distances[:, 0] / 2), 1.0)
+    plane = height * (bits // 2**20) / 4096 + tilt * (0.5 + (direction * vectors[:, 0]).sum(1))
+    return (1 - (1 - share) ** 2) * plane

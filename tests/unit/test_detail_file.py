@@ -221,3 +221,11 @@ def test_python_callers_get_the_same_refusal() -> None:
         detail_from({"noise": {"scale": 900}})
     with pytest.raises(InputError, match=r"nearest one is relief\.amplitude"):
         with_values(Detail(), {"relief.amplitud": 0.1})
+
+
+@pytest.mark.parametrize("key", ["noise.cell_height", "noise.cell_tilt", "noise.bevel"])
+def test_a_file_from_before_plates_is_one_without(key: str) -> None:
+    detail = Detail(seed=3)
+    text = json.loads(detail_to_text(detail))
+    del text["noise"][key.split(".")[1]]
+    assert detail_from_text(json.dumps(text)) == detail

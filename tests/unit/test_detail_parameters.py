@@ -140,6 +140,15 @@ def test_summary_tells_stretch_across_the_dense_axis_and_gloss() -> None:
     assert "stretched 2 times along 0 degrees" in reverse
 
 
+def test_plates_are_called_plates() -> None:
+    raised = summary(with_values(Detail(), {"noise.cell_height": 1.0}))
+    assert "scene units across, broken into plates, raised by" in raised
+    assert "plates" in summary(with_values(Detail(), {"noise.cell_tilt": 1.0}))
+    # Without cells there is nothing to raise.
+    assert "plates" not in summary(with_values(Detail(), {"noise.cell_height": 1.0, "noise.last_neighbour": 50}))
+    assert "plates" not in summary(Detail())
+
+
 def test_stones_are_called_stones() -> None:
     stones = {"noise.joining": "highest", "noise.last_neighbour": 50, "noise.scale": 20.0, "noise.octaves": 1}
     angular = summary(with_values(Detail(), stones | {"noise.facets": 0.9}))

@@ -136,7 +136,7 @@ def test_no_position_is_farther_from_its_fourth_point(dims: int, worst: float) -
 
 
 @pytest.mark.parametrize("dims", [2, 3])
-@pytest.mark.parametrize("radius", [1.118, 1.8, 1.84, 1.88])
+@pytest.mark.parametrize("radius", [1.118, 1.8, 1.84, 1.88, 2.0])
 def test_the_table_holds_every_cell_within_its_radius(dims: int, radius: float) -> None:
     grid = np.linspace(0.5, 1.0, 6)
     x = np.stack(np.meshgrid(*[grid] * dims), -1).reshape(-1, 1, dims)

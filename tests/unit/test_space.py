@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,21 +11,18 @@ from hypothesis import strategies as st
 
 from voldetail.detail import PAPER_NEIGHBOURS, START_CURVES, bounds, load_detail, rounded, save_detail
 from voldetail.detail.record import Detail
-from voldetail.fit.space import (
+from voldetail.fit.ranges import (
     ELONGATION,
     FOLD_HANDICAP,
-    FOLDS,
     PIGMENT_HANDICAP,
-    SHAPE_COUNT,
+    PLATE_BEVEL,
+    PLATE_HEIGHT,
+    PLATE_TILT,
     SHAPE_RANGE,
     STONE_GAIN,
     STONE_HEIGHT,
-    Kind,
-    Space,
-    fold,
-    profile,
-    shape_of,
 )
+from voldetail.fit.space import FOLDS, SHAPE_COUNT, Kind, Space, fold, profile, shape_of
 
 SPACE = Space("solid", (1.0, 60.0), 120.0)
 KINDS = st.builds(
@@ -34,6 +32,9 @@ KINDS = st.builds(
 ) | st.builds(
     lambda *free: Kind(1, 50, *free, stones=True), st.sampled_from(["exponential", "gaussian"]), st.integers(1, 4),
     st.booleans(), st.just("none"), st.just(False), st.booleans(),
+) | st.builds(
+    lambda *free: Kind(1, 2, *free, plates=True), st.sampled_from(["exponential", "gaussian"]), st.integers(1, 4),
+    st.booleans(), st.just("none"), st.booleans(), st.booleans(),
 )  # fmt: skip
 UNIT = st.floats(-0.5, 1.5)
 
@@ -67,6 +68,8 @@ def test_every_vector_is_a_valid_detail_of_its_kind(
         assert (pigment.height_albedo, pigment.cell_albedo, pigment.speckle) == (0.0, 0.0, 0.0)
     assert (noise.weights[1] < 0) == kind.grains
     assert (noise.joining == "highest") == kind.stones
+    if not kind.plates:
+        assert (noise.cell_height, noise.cell_tilt) == (0.0, 0.0)
     curve = np.array(noise.curve)
     assert curve.min() >= 0
     assert curve.max() <= 1
@@ -90,7 +93,9 @@ def test_decoding_undoes_encoding(data: st.DataObject, kind: Kind) -> None:
             values[name] = low + unit * (high - low)
         elif name == "stone_stretch":
             values[name] = detail.noise.anisotropy
-        elif name == "stone_gain":
+        elif name == "plate_dust":
+            values[name] = detail.reflectance.height_albedo
+        elif name in ("stone_gain", "plate_gain"):
             values[name] = detail.noise.gain
         elif name in ("roughness", "stone_height"):
             values[name] = detail.relief.amplitude * detail.noise.scale
@@ -122,6 +127,15 @@ def test_stones_are_as_high_as_wide_and_rise_steeply_from_narrow_gaps() -> None:
     assert (low.relief.amplitude * low.noise.scale) == pytest.approx(STONE_HEIGHT[0])
 
 
+def test_plates_have_a_height_a_tilt_and_a_bevel() -> None:
+    kind = Kind(1, 2, "gaussian", 1, False, grains=True, plates=True)
+    low, high = (SPACE.decode(kind, np.full(len(SPACE.names(kind)), v)).noise for v in (0.0, 1.0))
+    for end, noise in enumerate((low, high)):
+        found = (noise.cell_height, noise.cell_tilt, noise.bevel)
+        assert found == pytest.approx((PLATE_HEIGHT[end], PLATE_TILT[end], PLATE_BEVEL[end]))
+    assert len(SPACE.names(kind)) == len(SPACE.names(replace(kind, plates=False))) + 3
+
+
 def test_a_plain_space_has_the_papers_numbers_only() -> None:
     plain = Space("solid", (1.0, 60.0), 120.0, plain=True)
     kind = Kind(1, 2, "exponential", 3, True)
@@ -136,6 +150,7 @@ def test_what_seldom_looks_like_nature_has_to_pay_for_itself() -> None:
     assert Kind(1, 2, "gaussian", 2, True).handicap > 1.0
     assert Kind(1, 50, "gaussian", 2, True).handicap == 1.0
     assert Kind(1, 50, "gaussian", 2, False, stones=True).handicap < 1.0
+    assert replace(plain, plates=True).handicap > 1.0
     assert Kind(1, 2, "gaussian", 2, False, "ridge", False, True).handicap == pytest.approx(FOLD_HANDICAP * PIGMENT_HANDICAP)
 
 

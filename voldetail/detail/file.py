@@ -78,7 +78,7 @@ def detail_from_text(text: str, where: str = "The detail") -> Detail:
 
 
 def _refuse_missing(data: dict[str, Any], where: str) -> None:
-    """Refuse a file that leaves a parameter out: the record's defaults are for Python callers."""
+    """Refuse a file that leaves a parameter out, unless it is a later one: the record's defaults are for Python callers."""
     for group in _GROUPS:
         names = [p.key.split(".")[1] for p in PARAMETERS if p.key.startswith(group + ".")]
         if group not in data:
@@ -87,7 +87,7 @@ def _refuse_missing(data: dict[str, Any], where: str) -> None:
         if not isinstance(given, dict) or set(given) - set(names):
             continue  # of the wrong kind, or with a misspelt key: the record's own refusal tells more
         for name in names:
-            if name not in given:
+            if name not in given and not parameter(f"{group}.{name}").later:
                 allowed = parameter(f"{group}.{name}").allowed
                 raise InputError(f"{where}: {group}.{name} is missing; allowed: {allowed}.")
 
@@ -98,8 +98,11 @@ def schema() -> dict[str, Any]:
     form = {"const": FORMAT, "type": "string", "description": "Tells that this is a detail file."}
     made["properties"] = {"format": form, **made["properties"]}
     made["required"] = ["format", "version", *_GROUPS]
-    for record in (NoiseParameters, ReliefParameters, Reflectance):  # defaults are for Python, not for files
-        made["$defs"][record.__name__]["required"] = list(record.model_fields)
+    later = {p.key for p in PARAMETERS if p.later}
+    for group, record in (("noise", NoiseParameters), ("relief", ReliefParameters), ("reflectance", Reflectance)):
+        # Defaults are for Python, not for files.
+        names = [name for name in record.model_fields if f"{group}.{name}" not in later]
+        made["$defs"][record.__name__]["required"] = names
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **made}
 
 

@@ -24,7 +24,8 @@ class Parameter:
     """One parameter: key in a detail, symbol in GD10, unit, bounds, default, scale for a search, sentence.
 
     `count` is the number of values (1 for a scalar); `choices` is filled only where `scale` is "choice".
-    `lower` and `upper` bound each value.
+    `lower` and `upper` bound each value. `later`: it came after the first files; where one leaves it out, the default,
+    which changes nothing, is meant.
     """
 
     key: str
@@ -38,6 +39,7 @@ class Parameter:
     sentence: str
     count: int = 1
     choices: tuple[str, ...] = ()
+    later: bool = False
 
     @property
     def allowed(self) -> str:
@@ -73,6 +75,14 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter("noise.envelope", "Envelope", "e", "", 0, 1, "exponential", "choice",
               "How a kernel falls off: exponential (pointed tops, as GD10 eq. 2) or gaussian (round tops).",
               choices=("exponential", "gaussian")),
+    Parameter("noise.cell_height", "Plate height", "o", "", 0, 4, 0.0, "linear",
+              "How much higher some cells of the coarsest octave lie than others, in kernel heights; no effect where all count.",
+              later=True),
+    Parameter("noise.cell_tilt", "Plate tilt", "t", "per cell", 0, 4, 0.0, "linear",
+              "How steeply cells of the coarsest octave lean, each its own way; no effect where all points count.",
+              later=True),
+    Parameter("noise.bevel", "Bevel", "w", "cells", 0.01, 0.5, 0.12, "log",
+              "How wide the edge is over which a raised or tilted cell falls to the crack around it.", later=True),
     Parameter("noise.octaves", "Octaves", "n", "", 1, 8, 2, "integer",
               "How many copies of the noise, each finer and fainter than the one before, are added up."),
     Parameter("noise.lacunarity", "Lacunarity", "m", "", 1.2, 4.5, 2.0, "log",

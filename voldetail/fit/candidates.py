@@ -29,12 +29,12 @@ class Candidate:
 
 
 CHARACTERS = (
-    (False, "none", False, False), (True, "none", False, False), (False, "ridge", False, False),
-    (False, "billow", False, False), (False, "none", True, False), (True, "none", True, False),
-    (False, "none", False, True),
+    (False, "none", False, False, False), (True, "none", False, False, False), (False, "ridge", False, False, False),
+    (False, "billow", False, False, False), (False, "none", True, False, False), (True, "none", True, False, False),
+    (False, "none", False, True, False), (False, "none", True, False, True),
 )
-"""Stripes, fold of H, grains and stones that go together; each is a look of its own, and their products only multiply choices.
-The first two are GD10's."""
+"""Stripes, fold of H, grains, stones and plates that go together; each is a look of its own, and their products only multiply
+choices. The first two are GD10's."""
 
 
 def sampled(
@@ -44,7 +44,7 @@ def sampled(
 
     ``anisotropy`` is (factor, angle) of the photo's own spectrum; half of the candidates start from it and half from
     round cells, since the light alone makes any relief look stretched across it. ``extended`` allows what goes beyond
-    GD10: folded H, grains, stones and pigment.
+    GD10: folded H, grains, stones, plates and pigment.
     """
     families = [
         (ranks, character)
@@ -56,10 +56,10 @@ def sampled(
     factor, angle = anisotropy
     out = []
     for index, point in enumerate(points):
-        (first, last), (striped, fold, grains, stones) = families[index % len(families)]
+        (first, last), (striped, fold, grains, stones, plates) = families[index % len(families)]
         kind = Kind(
             first, last, "gaussian" if point[8] < 0.5 else "exponential", 1 + int(point[9] * 3), striped, fold, grains,
-            extended and point[10] < 0.5, stones,
+            extended and point[10] < 0.5, stones, plates,
         )
         low, high = space.scale
         rough_low, rough_high = space.roughness
@@ -73,9 +73,12 @@ def sampled(
             "noise.lacunarity": 1.5 + 1.5 * float(point[4]),
             "reflectance.speckle": 0.4 * float(point[13]),
             "reflectance.speckle_scale": space.finest * 0.5 ** float(point[12]),
-            "stone_height": 0.5 + 0.6 * float(point[1]), "noise.gain": 1.0, "stone_gain": 0.05 * 8.0 ** float(point[9]),
+            "stone_height": 0.5 + 0.6 * float(point[1]), "noise.gain": 1.0, "plate_gain": 0.1 + 0.4 * float(point[9]),
+            "plate_dust": 0.15 * float(point[6]), "stone_gain": 0.05 * 8.0 ** float(point[9]),
             "noise.stripe_frequency": 0.5 * 6.0 ** float(point[5]),
             "reflectance.height_albedo": 0.3 * float(point[6]), "reflectance.cell_albedo": 0.4 * float(point[7]),
+            "noise.cell_height": 4.0 * float(point[11]), "noise.cell_tilt": 4.0 * float(point[12]),
+            "noise.bevel": 0.05 * 6.0 ** float(point[13]),
             "noise.facets": float(point[11]), "noise.elongation": 1.0 + 2.0 * float(point[12]),
             "noise.size_spread": 0.7 * float(point[13]),
             "noise.stripe_spread": math.pi * (1.0 if point[6] < 0.5 else float(point[7])),
@@ -116,7 +119,7 @@ def paper_grid(space: Space, anisotropy: tuple[float, float]) -> list[Candidate]
 
 
 def best_distinct(candidates: list[Candidate], count: int) -> list[Candidate]:
-    """Return the ``count`` best candidates of different families: ranks, stripes, fold, grains and stones; the best first."""
+    """Return the ``count`` best candidates of different families: ranks, stripes, fold, grains, stones, plates; best first."""
     chosen: list[Candidate] = []
     seen = set()
     for candidate in sorted(candidates, key=lambda c: c.value):

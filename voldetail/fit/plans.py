@@ -32,8 +32,8 @@ class Plan:
     evaluations: int
 
 
-COVER = 285
-"""Samples that cover the space, 15 for each of the 19 families of noise; the archetypes come on top."""
+COVER = 300
+"""Samples that cover the space, 15 for each of the 20 families of noise; the archetypes come on top."""
 
 ROUNDS = ((10, 50, False), (5, 70, False), (3, 100, True), (2, 110, True))
 """Successive halving: candidates kept, evaluations for each, at full resolution or half. A family that is only badly

@@ -15,57 +15,41 @@ from numpy.typing import NDArray
 from voldetail.detail import Detail, bounds, parameter
 from voldetail.detail.parameters import CURVE_POINTS
 from voldetail.detail.record import NoiseParameters, Reflectance, ReliefParameters
+from voldetail.fit.ranges import (
+    CELL_ALBEDO,
+    ELONGATION,
+    FINEST_SPECKS,
+    FOLD_HANDICAP,
+    GAIN,
+    HEIGHT_ALBEDO,
+    LOGARITHMIC,
+    OF_PLATES,
+    OF_STONES,
+    PIGMENT_HANDICAP,
+    PLAIN_NAME,
+    PLATE_BEVEL,
+    PLATE_DUST,
+    PLATE_GAIN,
+    PLATE_HEIGHT,
+    PLATE_TILT,
+    PLATES_HANDICAP,
+    SHAPE_RANGE,
+    SIZE_SPREAD,
+    SPECKLE,
+    STONE_GAIN,
+    STONE_HEIGHT,
+    STONE_STRETCH,
+    STONES_HANDICAP,
+    STRIPED_CELLS_HANDICAP,
+)
 
 Vector = NDArray[np.float64]
 
 SHAPE_COUNT = 3
-SHAPE_RANGE = 1.5
-"""Range of the numbers that shape H: exp(2 x 1.5) = 20 between its steepest and flattest part by each, at most."""
 
 GRAINS = (1.0, -1.0, 1.0)
 
-HEIGHT_ALBEDO = (-0.1, 0.35)
-CELL_ALBEDO = (0.0, 0.35)
-"""Ranges that are searched: dust and moss sit in hollows more often than on tops. Wider ones let the search paint flat
-ground instead of raising it; tuned on gravel and grass."""
-
-SPECKLE = (0.0, 0.5)
-FINEST_SPECKS = 2.0
-"""Strength of the specks, and how much coarser than the finest octave they may be: larger ones are seen as scales."""
-
 PIGMENT = ("height_albedo", "cell_albedo", "speckle", "speckle_scale")
-
-STONE_HEIGHT = (0.4, 1.2)
-"""Range of the amplitude in cells where stones are searched: they are about as high as wide, never a flat mosaic."""
-
-STONE_STRETCH = (0.6, 1.67)
-"""Range of the anisotropy where stones are searched: they lie every way, and what the light stretches is not theirs."""
-
-ELONGATION = (1.0, 2.2)
-SIZE_SPREAD = (0.0, 0.55)
-"""Ranges that leave hardly any ground between stones (see noise.grains)."""
-
-GAIN = (0.05, 1.5)
-STONE_GAIN = (0.05, 0.4)
-"""Ranges of the octaves' gain; rougher stones lose their outlines and look like cauliflower."""
-
-FOLD_HANDICAP = 1.2
-STRIPED_CELLS_HANDICAP = 1.15
-STONES_HANDICAP = 0.95
-PIGMENT_HANDICAP = 1.05
-"""Factors on the distance by how often a family looks like nature where it scores like nature. A folded H, and stripes
-within single cells, fit much and look like little; stones look right where they are only almost as near; more numbers
-for pigment fit a few percent by themselves. Tuned by eye on gravel, roughcast, bark and sand."""
-
-OF_STONES = {
-    "roughness": "stone_height", "noise.anisotropy": "stone_stretch", "noise.gain": "stone_gain", "shape.0": "stone_profile",
-}
-"""Numbers that have a range of their own where stones are searched, and the names that this range goes by."""
-
-PLAIN_NAME = {own: name for name, own in OF_STONES.items()}
-
-LOGARITHMIC = ("roughness", "stone_height", "stone_gain", "stone_stretch", "noise.stripe_frequency")
-"""Numbers searched on a logarithmic scale though they are no parameter of a detail, or one that is declared linear."""
 
 FOLDS = ("none", "ridge", "billow")
 
@@ -75,8 +59,9 @@ class Kind:
     """What is discrete: ranks of feature points, envelope, octaves, whether there are stripes, how H is folded.
 
     grains: the second point counts against the first, so that the noise vanishes on the border of cells. stones: the
-    highest kernel alone counts, each a body of its own shape. pigment: albedo varies with height, from grain to grain and
-    by specks. fold: "none" keeps H monotone; "ridge" is 1 - |2H - 1| of a monotone H, "billow" |2H - 1|.
+    highest kernel alone counts, each a body of its own shape. plates: cells have planes of their own. pigment: albedo
+    varies with height, from grain to grain and by specks. fold: "none" keeps H monotone; "ridge" is 1 - |2H - 1| of a
+    monotone H, "billow" |2H - 1|.
     """
 
     first: int
@@ -88,6 +73,7 @@ class Kind:
     grains: bool = False
     pigment: bool = False
     stones: bool = False
+    plates: bool = False
 
     @property
     def handicap(self) -> float:
@@ -98,6 +84,7 @@ class Kind:
                 (self.fold != "none", FOLD_HANDICAP),
                 (self.striped and (self.first, self.last) != (1, 50), STRIPED_CELLS_HANDICAP),
                 (self.stones, STONES_HANDICAP), (self.pigment, PIGMENT_HANDICAP),
+                (self.plates, PLATES_HANDICAP),
             )
             if applies
         )
@@ -131,12 +118,16 @@ class Space:
             out += ["noise.lacunarity"] if self.plain else ["noise.lacunarity", "noise.gain"]
         if kind.stones:
             out += ["noise.facets", "noise.elongation", "noise.size_spread"]
+        if kind.plates:
+            out += ["noise.cell_height", "noise.cell_tilt", "noise.bevel"]
         if kind.striped:
             out += ["noise.stripe_frequency", "noise.stripe_spread"]
         if kind.pigment:
             out += [f"reflectance.{name}" for name in PIGMENT]
         if kind.stones:
             return [OF_STONES.get(name, name) for name in (*out, "shape.0")]
+        if kind.plates:
+            out = [OF_PLATES.get(name, name) for name in out]
         return out + [f"shape.{i}" for i in range(SHAPE_COUNT)]
 
     def range_of(self, name: str) -> tuple[float, float, bool]:
@@ -148,6 +139,8 @@ class Space:
             "noise.scale": self.scale, "roughness": self.roughness, "stone_height": STONE_HEIGHT,
             "stone_stretch": STONE_STRETCH,
             "stone_profile": (0.0, SHAPE_RANGE), "noise.gain": GAIN, "stone_gain": STONE_GAIN,
+            "plate_gain": PLATE_GAIN, "plate_dust": PLATE_DUST,
+            "noise.cell_height": PLATE_HEIGHT, "noise.cell_tilt": PLATE_TILT, "noise.bevel": PLATE_BEVEL,
             "noise.elongation": ELONGATION, "noise.size_spread": SIZE_SPREAD, "noise.anisotropy": self.anisotropy,
             "noise.stripe_frequency": self.stripes, "reflectance.height_albedo": HEIGHT_ALBEDO,
             "reflectance.cell_albedo": CELL_ALBEDO, "reflectance.speckle": SPECKLE,
@@ -171,6 +164,8 @@ class Space:
             weights=GRAINS if kind.grains else (1.0, 1.0, 1.0), joining="highest" if kind.stones else "sum",
             facets=values.get("noise.facets", 0.0), elongation=values.get("noise.elongation", 1.0),
             size_spread=values.get("noise.size_spread", 0.0), octaves=min(kind.octaves, shown), lacunarity=lacunarity,
+            cell_height=values.get("noise.cell_height", 0.0), cell_tilt=values.get("noise.cell_tilt", 0.0),
+            bevel=values.get("noise.bevel", parameter("noise.bevel").default),
             gain=values.get("noise.gain", 1.0), stripe_frequency=values.get("noise.stripe_frequency", 0.0),
             stripe_spread=values.get("noise.stripe_spread", 0.0),
             scale=values["noise.scale"], anisotropy=values["noise.anisotropy"], angle=values["noise.angle"],

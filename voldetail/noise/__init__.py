@@ -7,11 +7,13 @@ from voldetail.noise.grains import GrainShape
 from voldetail.noise.lattice import cell_hash, feature_point, nearest_points, search_table
 from voldetail.noise.moments import moments
 from voldetail.noise.octave import KERNEL_RADIUS, NoiseSettings, single_octave
+from voldetail.noise.plates import PlateShape, plate_numbers
 
 __all__ = [
     "KERNEL_RADIUS",
     "GrainShape",
     "NoiseSettings",
+    "PlateShape",
     "cell_hash",
     "cell_value",
     "evaluate_curve",
@@ -19,6 +21,7 @@ __all__ = [
     "moments",
     "nearest_points",
     "number_of",
+    "plate_numbers",
     "relief_function",
     "search_table",
     "single_octave",

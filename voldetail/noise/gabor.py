@@ -25,6 +25,7 @@ from voldetail.noise.curve import evaluate_curve
 from voldetail.noise.grains import GrainShape
 from voldetail.noise.moments import differentiable_moments
 from voldetail.noise.octave import TURN, NoiseSettings, octave_and_owner
+from voldetail.noise.plates import PlateShape
 
 ETA = 1.5
 """Deviations at which the argument of H is 1/sqrt(2); tuned so that all eleven points of H are in use."""
@@ -49,13 +50,14 @@ def relief_function(
     curve: Any,
     gain: Any = 1.0,
     shape: GrainShape | None = None,
+    plates: PlateShape | None = None,
 ) -> tuple[Any, Any | None]:
     """Return R(x) in [0, 1], eq. 3, at ``points`` (2 or 3 float arrays, scene units), and the hash word of the
     cell or grain that it belongs to in the coarsest octave, None where all points count.
 
     ``seed`` is a UInt array; ``curve`` a float array of eleven values; the others floats or float arrays of
-    width 1, differentiable. ``shape`` is that of the grains where the highest counts. Keep what
-    changes opaque (`dr.opaque`), else each value compiles a kernel.
+    width 1, differentiable. ``shape`` is that of the grains where the highest counts, ``plates`` that of
+    the plates where settings.plates. Keep what changes opaque (`dr.opaque`), else each value compiles a kernel.
     """
     float_type: Any = type(points[0])
     x = frame(points, scale, anisotropy, angle)
@@ -72,6 +74,9 @@ def relief_function(
         if own.highest:
             assert shape is not None, "grains need a shape"
             numbers = shape.numbers
+        if own.plates:
+            assert plates is not None, "plates need a shape"
+            numbers += plates.numbers
         value, found = octave_and_owner(scaled, own, salt, *numbers)
         owner = found if octave == 0 else owner
         mean, deviation = differentiable_moments(own, float_type, *numbers)

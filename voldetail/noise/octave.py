@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 
 from voldetail.noise.grains import GrainShape, highest_grain
 from voldetail.noise.lattice import FOURTH_POINT_RADIUS, RANKS, UNIT_16, Neighbourhood, nearest_points
+from voldetail.noise.plates import PlateShape, plate
 
 SIGMA = 0.25
 """Envelope deviation in cells: exp(-D / 2 sigma) has fallen to 1/e at half a cell, about the mean distance to
@@ -75,7 +76,8 @@ class NoiseSettings:
     dims: 2 on surface parameters, 3 in space. everywhere: True for (1, 50). weights: signed weight of the 1st
     to 3rd closest point, used when not everywhere; (k, k') is ones from k to k'. octaves: n >= 1. gaussian:
     envelope of the squared distance (round tops) instead of eq. 2's plain distance (pointed tops). highest: the
-    coarsest octave is made of grains (noise.grains), of which the highest counts, and `everywhere` holds.
+    coarsest octave is made of grains (noise.grains), of which the highest counts, and `everywhere` holds. plates: each
+    cell of the coarsest octave has a plane of its own (noise.plates), and `everywhere` does not hold.
     """
 
     dims: int = 3
@@ -84,6 +86,7 @@ class NoiseSettings:
     octaves: int = 1
     gaussian: bool = False
     highest: bool = False
+    plates: bool = False
 
     @staticmethod
     def from_ranks(
@@ -94,12 +97,15 @@ class NoiseSettings:
         gaussian: bool = False,
         signs: tuple[float, ...] = (1.0, 1.0, 1.0),
         highest: bool = False,
+        plates: bool = False,
     ) -> NoiseSettings:
         """Return the settings for GD10's k = first, k' = last: (1, 50) or any 1 <= k <= k' <= 3.
 
         ``signs`` weighs the first to third point where it is in the set; the paper's are all 1. With (1, -1) the noise
         falls to zero where two points are equally close: the border between grains.
         """
+        if plates and (first, last) == (1, 50):
+            raise ValueError("plates belong to cells: (k, k') = (1, 50) has none")
         if (first, last) == (1, 50):
             return NoiseSettings(dims, True, (1.0, 1.0, 1.0), octaves, gaussian, highest)
         if highest:
@@ -107,17 +113,18 @@ class NoiseSettings:
         if not 1 <= first <= last <= RANKS - 1:
             raise ValueError(f"(k, k') = ({first}, {last}) is neither (1, 50) nor 1 <= k <= k' <= 3")
         w = tuple(float(signs[i - 1]) if first <= i <= last else 0.0 for i in (1, 2, 3))
-        return NoiseSettings(dims, False, (w[0], w[1], w[2]), octaves, gaussian)
+        return NoiseSettings(dims, False, (w[0], w[1], w[2]), octaves, gaussian, plates=plates)
 
     def of_octave(self, octave: int) -> NoiseSettings:
-        """Return the settings of one octave alone; grains are the coarsest, and what is finer is their roughness."""
-        return replace(self, octaves=1, highest=self.highest and octave == 0)
+        """Return the settings of an octave; grains are the coarsest, and what is finer is their roughness; so are plates."""
+        return replace(self, octaves=1, highest=self.highest and octave == 0, plates=self.plates and octave == 0)
 
 
 def single_octave(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, *numbers: Any) -> Any:
     """Return N(x), eq. 2, for ``x`` in cells; continuous everywhere, differentiable almost everywhere.
 
-    ``numbers`` are the stripes' frequency phi and spread theta, or the three of a `GrainShape` where the highest counts.
+    ``numbers`` are the stripes' frequency phi and spread theta, and those of a `PlateShape` where there are plates; or the
+    three of a `GrainShape` where the highest counts.
     """
     return octave_and_owner(x, settings, salt, *numbers)[0]
 
@@ -130,7 +137,10 @@ def octave_and_owner(
         return highest_grain(x, salt, GrainShape(*numbers), settings.gaussian)
     if settings.everywhere:
         return _sum_of_all(x, settings, salt, *numbers), None
-    return _sum_of_ranks(x, settings, salt, *numbers)
+    total, owner, nearest = _sum_of_ranks(x, settings, salt, *numbers[:2])
+    if settings.plates:
+        total += plate(x, salt, nearest, PlateShape(*numbers[2:]))
+    return total, owner
 
 
 def _sum_of_all(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, phi: Any, theta: Any) -> Any:
@@ -161,7 +171,7 @@ def _sum_of_all(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, phi: Any
 
 def _sum_of_ranks(
     x: tuple[Any, ...], settings: NoiseSettings, salt: Any, phi: Any, theta: Any
-) -> tuple[Any, Any]:
+) -> tuple[Any, Any, Any]:
     weights = (*settings.weights, 0.0)
     last = max((i + 1 for i, w in enumerate(weights) if w != 0.0), default=1)
     # The point after the last one is needed only to know where stripes must fade.
@@ -184,7 +194,7 @@ def _sum_of_ranks(
         total += (
             weights[rank] * _envelope(distances[rank], settings.gaussian) * (1.0 + (stripes - 1.0) * fade)
         )
-    return total, vectors[0][1]
+    return total, vectors[0][1], indices[0]
 
 
 def _squared(vector: tuple[Any, ...]) -> Any:

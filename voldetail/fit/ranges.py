@@ -1,0 +1,59 @@
+"""What is searched how far: ranges narrower than a detail allows, and what families have to pay for themselves."""
+
+from __future__ import annotations
+
+SHAPE_RANGE = 1.5
+"""Range of the numbers that shape H: exp(2 x 1.5) = 20 between its steepest and flattest part by each, at most."""
+
+HEIGHT_ALBEDO = (-0.1, 0.35)
+CELL_ALBEDO = (0.0, 0.35)
+"""Ranges that are searched: dust and moss sit in hollows more often than on tops. Wider ones let the search paint flat
+ground instead of raising it; tuned on gravel and grass."""
+
+SPECKLE = (0.0, 0.5)
+FINEST_SPECKS = 2.0
+"""Strength of the specks, and how much coarser than the finest octave they may be: larger ones are seen as scales."""
+
+STONE_HEIGHT = (0.4, 1.2)
+"""Range of the amplitude in cells where stones are searched: they are about as high as wide, never a flat mosaic."""
+
+STONE_STRETCH = (0.6, 1.67)
+"""Range of the anisotropy where stones are searched: they lie every way, and what the light stretches is not theirs."""
+
+ELONGATION = (1.0, 2.2)
+SIZE_SPREAD = (0.0, 0.55)
+"""Ranges that leave hardly any ground between stones (see noise.grains)."""
+
+GAIN = (0.05, 1.5)
+STONE_GAIN = (0.05, 0.4)
+"""Ranges of the octaves' gain; rougher stones lose their outlines and look like cauliflower."""
+
+PLATE_HEIGHT = (0.0, 4.0)
+PLATE_TILT = (0.0, 4.0)
+PLATE_BEVEL = (0.04, 0.35)
+"""Ranges of plates; a wider bevel leaves no plate between the cracks. Tuned by eye on mud, slate, bark and gravel."""
+
+PLATE_GAIN = (0.05, 0.6)
+PLATE_DUST = (-0.1, 0.15)
+"""Ranges where plates are searched: finer octaves are their roughness and no second set of cracks, and it is shadow, not
+paint, that darkens cracks. Tuned on gravel, which came out as a flat mosaic with painted lines."""
+
+FOLD_HANDICAP = 1.2
+STRIPED_CELLS_HANDICAP = 1.15
+STONES_HANDICAP = 0.95
+PIGMENT_HANDICAP = 1.05
+PLATES_HANDICAP = 1.1
+"""Factors on the distance by how often a family looks like nature where it scores like nature. A folded H, and stripes
+within single cells, fit much and look like little; stones look right where they are only almost as near; more numbers
+for pigment or plates fit a few percent by themselves. Tuned by eye on gravel, roughcast, bark and sand."""
+
+OF_STONES = {
+    "roughness": "stone_height", "noise.anisotropy": "stone_stretch", "noise.gain": "stone_gain", "shape.0": "stone_profile",
+}
+OF_PLATES = {"noise.gain": "plate_gain", "reflectance.height_albedo": "plate_dust"}
+"""Numbers that have a range of their own where stones or plates are searched, and the names that this range goes by."""
+
+PLAIN_NAME = {own: name for names in (OF_STONES, OF_PLATES) for name, own in names.items()}
+
+LOGARITHMIC = ("roughness", "stone_height", "stone_gain", "plate_gain", "stone_stretch", "noise.stripe_frequency")
+"""Numbers searched on a logarithmic scale though they are no parameter of a detail, or one that is declared linear."""
