@@ -24,6 +24,7 @@ from voldetail.files import write_text
 from voldetail.fit import fit
 from voldetail.image import resize, save_image
 from voldetail.report import write_report
+from voldetail.scene.setup import Setup
 from voldetail.scene.setup_file import setup_from
 
 
@@ -67,13 +68,22 @@ PHOTOGRAPHS = (
 OVERVIEW = ("gravel", "rock_plants", "stone_slab", "pebble_wall", "rock_weathered", "grass")
 
 
+def setup_of(photograph: Photograph, **fit_settings: Any) -> Setup:
+    """Return the Setup of one photograph, with settings of the fit that are not the default's."""
+    path = photograph.path if photograph.path.startswith("skimage:") else str(SHARED / photograph.path)
+    return setup_from(
+        {"photo": {"path": path, "zone": photograph.zone}, "light": photograph.light, "fit": fit_settings}, photograph.name
+    )
+
+
+def is_there(photograph: Photograph) -> bool:
+    """Whether the photograph can be read here."""
+    return photograph.path.startswith("skimage:") or (SHARED / photograph.path).exists()
+
+
 def run(photograph: Photograph, output: Path, unshown: Path | None) -> dict[str, Any]:
     """Fit one photograph and write what may be shown; returns its numbers."""
-    path = photograph.path if photograph.path.startswith("skimage:") else str(SHARED / photograph.path)
-    setup = setup_from(
-        {"photo": {"path": path, "zone": photograph.zone}, "light": photograph.light}, photograph.name
-    )
-    result = fit(setup)
+    result = fit(setup_of(photograph))
     folder = output / photograph.name
     folder.mkdir(parents=True, exist_ok=True)
     save_detail(folder / "detail.json", result.detail)
@@ -123,7 +133,7 @@ def main() -> None:
     for photograph in PHOTOGRAPHS:
         if arguments.only and photograph.name not in arguments.only:
             continue
-        if not photograph.path.startswith("skimage:") and not (SHARED / photograph.path).exists():
+        if not is_there(photograph):
             print(f"{photograph.name}: skipped, {photograph.path} is not there")
             continue
         records.append(run(photograph, arguments.output, arguments.unshown))

@@ -18,6 +18,10 @@ from voldetail.fit.space import Kind, Space, Vector
 
 PREVIEW_SECONDS = 2.0
 
+COARSE_COOLING = 0.5
+"""Factor on the spread after each coarse round, at most. A few generations cannot shrink it by themselves, and families that
+were not searched closely are compared by luck: with the spread left to itself, gravel lost its stones to grooves."""
+
 POPULATION = 8
 """Vectors a generation: in a few hundred evaluations, smaller generations got lower in 8 of 12 starts of recovery cases."""
 
@@ -178,8 +182,11 @@ class Session:
             return list(self.values(objective, [(kind, vector) for vector in vectors], seed))
 
         def after(solution: Solution) -> Candidate:
+            spread = solution.memory.spread
+            if objective is self.coarse:
+                spread = min(spread, COARSE_COOLING * candidate.spread)
             return replace(
-                candidate, vector=solution.vector, value=solution.value, spread=solution.memory.spread,
+                candidate, vector=solution.vector, value=solution.value, spread=spread,
                 covariance=solution.memory.covariance, spent=candidate.spent + solution.evaluations,
             )
 
