@@ -41,11 +41,11 @@ def nearest(photos: dict[str, pictures.Picture], metrics: tuple[str, ...]) -> di
         for metric, references in asking.items():
             found[metric][:, column] = distances(references, picture)
     return {
-        metric: _retrieval(values, list(first), [name for name, _ in gallery]) for metric, values in found.items()
+        metric: retrieval(values, list(first), [name for name, _ in gallery]) for metric, values in found.items()
     }
 
 
-def _retrieval(distances: np.ndarray, asking: list[str], gallery: list[str]) -> dict[str, float]:
+def retrieval(distances: np.ndarray, asking: list[str], gallery: list[str]) -> dict[str, float]:
     hits, precision = [], []
     for name, row in zip(asking, distances, strict=True):
         itself = gallery.index(name)
@@ -155,11 +155,11 @@ def main() -> None:
     metrics = tuple(sys.argv[1:]) or YARDSTICKS
     path = RESULTS / "table.json"
     scores = json.loads(path.read_text())["scores"] if sys.argv[1:] else {}
-    retrieval = nearest(photos, metrics)
+    ranked = nearest(photos, metrics)
     families = [*texture_families.rendered(), *texture_families.photographed(photos)]
     for metric in metrics:
         scores[metric] = (
-            retrieval[metric]
+            ranked[metric]
             | fooled(photos, metric)
             | {"order": texture_families.order(families, metric)}
             | {"ms": milliseconds(next(iter(photos.values()))[:192, :192], metric)}
