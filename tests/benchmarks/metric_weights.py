@@ -43,6 +43,9 @@ HOLD = 3.0
 SHARES = {"granulometry": 1 / 6, "swells": 0.04}
 """Shares of the weight that fits need, whatever photographs say."""
 
+POWERS = (0.5, 1.5, 2.0, 3.0, 4.0)
+"""Of power means in the place of the default's plain one."""
+
 SHARPNESS = 0.15
 """Ratio of distances, as a logarithm, that counts as clearly in order."""
 
@@ -148,15 +151,21 @@ def _pairs(owners: list[str], samples: dict[str, Sample]) -> Iterator[tuple[Arra
             yield near, np.array(list(sample.decoys.values())), 1 / len(near)
 
 
-def scores(owners: list[str], samples: dict[str, Sample], weights: dict[str, Array]) -> dict[str, Any]:
-    """The table's scores of distances by each photo's ``weights``."""
-    found: dict[str, Any] = retrieval(np.array([samples[n].crops @ weights[n] for n in samples]), list(samples), owners)
+def scores(
+    owners: list[str], samples: dict[str, Sample], weights: dict[str, Array], power: float = 1.0
+) -> dict[str, Any]:
+    """The table's scores of distances by each photo's ``weights``, as power means."""
+
+    def mean(parts: Array, name: str) -> Array:
+        return (parts**power @ weights[name]) ** (1 / power)
+
+    found: dict[str, Any] = retrieval(np.array([mean(samples[n].crops, n) for n in samples]), list(samples), owners)
     right, clean, ratios = [], 0, {}
     for name, sample in samples.items():
         if not sample.decoys:
             continue
-        near = {kind: float(v @ weights[name]) for kind, v in sample.accepted.items()}
-        far = {kind: float(v @ weights[name]) for kind, v in sample.decoys.items()}
+        near = {kind: float(mean(v, name)) for kind, v in sample.accepted.items()}
+        far = {kind: float(mean(v, name)) for kind, v in sample.decoys.items()}
         crops = np.mean([value for kind, value in near.items() if kind.startswith("crop")])
         ratios[name] = far["phase"] / crops
         right += [a < d for a in near.values() for d in far.values()]
@@ -170,7 +179,9 @@ def scores(owners: list[str], samples: dict[str, Sample], weights: dict[str, Arr
 def report(parts: list[Part], owners: list[str], samples: dict[str, Sample]) -> dict[str, Any]:
     """Scores of the default, and of learned weights on the photos that each fold left out and on all that they saw."""
     default = np.array([COMBINED.get(n, {}).get(part, 0.0) for n, part in parts])
-    out: dict[str, Any] = {}
+    out: dict[str, Any] = {
+        f"default, power mean of {power:g}": scores(owners, samples, dict.fromkeys(samples, default), power) for power in POWERS
+    }
     for shape, bend in SHAPES.items():
         everything = _bent(samples, lambda v, bend=bend: bend(v))  # type: ignore[misc]
         out[f"default, {shape}"] = scores(owners, everything, dict.fromkeys(samples, default))
