@@ -1,6 +1,7 @@
 """Photographs cut into crops, pictures a person accepts as the same texture, and decoys that a person does not."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,6 +77,16 @@ def accepted(photo: Picture) -> dict[str, Picture]:
         centred = (first[0] - (side - SIDE) // 2, first[1] - (side - SIDE) // 2)
         found[f"scale {scale}"] = resize(crop(photo, centred, side), (SIDE, SIDE))
     return found | {f"exposure {factor}": crop(photo, first) * np.float32(factor) for factor in (0.9, 1.1)}
+
+
+def in_8_bits(picture: NDArray[np.floating]) -> Picture:
+    """A linear picture as it comes back from an 8-bit file."""
+    return from_8_bits(np.round(np.clip(to_srgb(np.maximum(picture, 0)), 0, 1) * 255))
+
+
+def from_8_bits(values: NDArray[Any]) -> Picture:
+    """Linear light of 8-bit sRGB values."""
+    return np.asarray(to_linear(values.astype(np.float32) / np.float32(255)), np.float32)
 
 
 def decoys(picture: Picture, seed: int = 7) -> dict[str, Picture]:

@@ -7,7 +7,19 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from voldetail.metric import granulometry, jets, magnitudes, marginals, patches, patterns, published, spectrum, swells, tone
+from voldetail.metric import (
+    gabor,
+    granulometry,
+    jets,
+    magnitudes,
+    marginals,
+    patches,
+    patterns,
+    published,
+    spectrum,
+    swells,
+    tone,
+)
 from voldetail.metric.layers import Layers
 
 Array = NDArray[np.float32]
@@ -34,6 +46,7 @@ INGREDIENTS: Mapping[str, Ingredient] = MappingProxyType(
         "swells": swells,
         "jets": jets,
         "tone": tone,
+        "gabor": gabor,
     }
 )
 
