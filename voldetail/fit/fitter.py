@@ -43,7 +43,7 @@ FINEST_OCTAVE = 1.6
 """Pixels a cell of the finest octave must span, near the sampling limit of the mesh's one vertex a pixel."""
 
 
-INTERVAL_SEEDS = 4
+INTERVAL_SEEDS = 2
 """Noise seeds for the interval of the amplitude."""
 
 FINALISTS = 3
