@@ -27,7 +27,7 @@ RESULTS = Path(__file__).resolve().parents[2] / "results" / "metric"
 _TILE = 120
 """Pixels of a crop shown in the sheet; distances are of the whole crop."""
 
-KINDS = ("phase", "noise", "blur", "grain", "searched")
+KINDS = ("phase", "noise", "blur", "grain", "searched", "turned")
 
 
 def nearest(photos: dict[str, pictures.Picture], metrics: tuple[str, ...]) -> dict[str, dict[str, float]]:
@@ -69,6 +69,8 @@ def fooled(photos: dict[str, pictures.Picture], metric: str) -> dict[str, Any]:
         forged = searched(name)
         if forged is not None:
             wrong["searched"] = forged
+        if name in pictures.LIT_PHOTOS:
+            wrong["turned"] = pictures.turned(photos[name])
         near = {k: asking.distance(p) for k, p in pictures.accepted(photos[name]).items()}
         far = {k: asking.distance(p) for k, p in wrong.items()}
         crops = float(np.mean([value for kind, value in near.items() if kind.startswith("crop")]))

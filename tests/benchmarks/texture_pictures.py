@@ -30,6 +30,13 @@ DECOY_PHOTOS = (
 """Photos whose phase-randomised copy looks wrong. Not so for sand ripples and fine bark, which are near Gaussian:
 there a person takes the copy for another crop, and no metric should be asked to refuse it."""
 
+LIT_PHOTOS = (
+    "gravel", "duion_rock_rough_plants_01", "duion_rock_rough_weathered_01", "nmo_stone_slab", "ns_cracked_ground", "ns_bark",
+    "ambientCG_Rock058", "polyhaven_gray_rocks",
+)  # fmt: skip
+"""Those lit from one side, whose other crops turned by half a turn look lit from the other, stones like dents. Not so
+under a flash, and not for grass and bricks."""
+
 SHEET_PHOTOS = ("gravel", "grass", "brick", "ambientCG_Rock058")
 """Shown in the sheet: CC0."""
 
@@ -100,6 +107,11 @@ def decoys(picture: Picture, seed: int = 7) -> dict[str, Picture]:
         "grain": encoded + rng.normal(0, max(0.04, 0.3 * encoded.std()), encoded.shape),
     }
     return {name: to_linear(np.clip(shown, 0, 1).astype(np.float32)) for name, shown in found.items()}
+
+
+def turned(photo: Picture) -> Picture:
+    """Return another crop of a photo turned by half a turn: the same texture lit from the other side."""
+    return np.ascontiguousarray(crop(photo, corners(photo)[1])[::-1, ::-1])
 
 
 def random_phase(encoded: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from skimage import data
 
-from tests.benchmarks.rivals import RIVALS, contours, portilla, random_features, sliced, slopes
+from tests.benchmarks.rivals import RIVALS, contours, portilla, random_features, sliced
 from tests.benchmarks.rivals.steerable import LEVELS, ORIENTATIONS, doubled, pyramid
 from voldetail.image import to_linear
 from voldetail.metric.layers import Layers, layers
@@ -120,14 +120,3 @@ def test_contours_do_not_see_tone_and_change_sign_in_the_negative() -> None:
     assert other == pytest.approx(one, abs=0.006)  # blurring comes after the change of tone
     assert turned[4, ::-1] == pytest.approx(-one[4], abs=0.002)
     assert np.abs(one[4]).max() > 0.01
-
-
-def test_slopes_of_a_saw_are_skewed_and_of_noise_are_not() -> None:
-    x = np.arange(192) % 13
-    saw = np.where(x < 10, x / 10, (13 - x) / 3)[None, :] * np.ones((192, 1))
-    lit = layers(to_linear((0.3 + 0.4 * saw).astype(np.float32)))
-    even, leaning = (slopes.measure(p, {})["skew level 0"] for p in (noise(6), lit))
-    assert np.abs(even).max() < 0.1
-    assert np.abs(leaning[0]).max() > 0.5
-    mirrored = slopes.measure(Layers(tuple(i[:, ::-1] for i in lit.images), lit.masks), {})["skew level 0"]
-    assert mirrored[0] == pytest.approx(-leaning[0], abs=0.05)

@@ -2,9 +2,9 @@
 
 from types import MappingProxyType
 
-from tests.benchmarks.rivals import contours, portilla, random_features, sliced, slopes
+from tests.benchmarks.rivals import contours, portilla, random_features, sliced
 from voldetail.metric.ingredients import Ingredient
 
 RIVALS: MappingProxyType[str, Ingredient] = MappingProxyType(
-    {"portilla": portilla, "sliced": sliced, "random": random_features, "contours": contours, "slopes": slopes}
+    {"portilla": portilla, "sliced": sliced, "random": random_features, "contours": contours}
 )
