@@ -53,8 +53,9 @@ from voldetail.scene.setup import Setup
 from voldetail.scene.setup_file import setup_from
 from voldetail.scene.view import Zone, view_of
 
-METRICS = ("combined", "patches", "jets", "published")
-"""The first is what was minimised; patches and jets take no part in it; the last is GD10's own."""
+METRICS = ("combined", "patches", "jets", "lean", "published")
+"""The first is what was minimised; patches, jets and lean take no part in it, and lean alone sees the lit side; the last is
+GD10's own."""
 
 COLUMNS = (*METRICS, "side")
 """`side` is no distance between textures: how far apart they look lit from, the length of a difference of vectors."""

