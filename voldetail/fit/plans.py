@@ -35,7 +35,7 @@ class Plan:
 COVER = 300
 """Samples that cover the space, 15 for each of the 20 families of noise; the archetypes come on top."""
 
-ROUNDS = ((10, 50, False), (5, 70, False), (3, 100, True), (2, 110, True))
+ROUNDS = ((10, 50, False), (6, 80, False), (3, 90, True), (2, 110, True))
 """Successive halving: candidates kept, evaluations for each, at full resolution or half. A family that is only badly
 sampled so far gets its chance, and most of the effort goes where it pays."""
 

@@ -42,9 +42,11 @@ FOLD_HANDICAP = 1.2
 STRIPED_CELLS_HANDICAP = 1.15
 STONES_HANDICAP = 0.95
 PIGMENT_HANDICAP = 1.05
+GRAINS_HANDICAP = 1.1
 PLATES_HANDICAP = 1.1
 """Factors on the distance by how often a family looks like nature where it scores like nature. A folded H, and stripes
-within single cells, fit much and look like little; stones look right where they are only almost as near; more numbers
+within single cells, fit much and look like little; so do cells that fit together like paving (on rock with plants they were
+five percent nearer than crusts, and looked like cobbles), plates among them; stones look right where they are only almost as near; more numbers
 for pigment or plates fit a few percent by themselves. Tuned by eye on gravel, roughcast, bark and sand."""
 
 OF_STONES = {

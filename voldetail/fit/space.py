@@ -21,6 +21,7 @@ from voldetail.fit.ranges import (
     FINEST_SPECKS,
     FOLD_HANDICAP,
     GAIN,
+    GRAINS_HANDICAP,
     HEIGHT_ALBEDO,
     LOGARITHMIC,
     OF_PLATES,
@@ -84,7 +85,7 @@ class Kind:
                 (self.fold != "none", FOLD_HANDICAP),
                 (self.striped and (self.first, self.last) != (1, 50), STRIPED_CELLS_HANDICAP),
                 (self.stones, STONES_HANDICAP), (self.pigment, PIGMENT_HANDICAP),
-                (self.plates, PLATES_HANDICAP),
+                (self.grains, GRAINS_HANDICAP), (self.plates, PLATES_HANDICAP),
             )
             if applies
         )
