@@ -50,7 +50,8 @@ def default_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
 
     ``evaluations`` scales every stage; None means the tuned numbers.
     """
-    ranked = sum(count * UNSEEN_SEEDS for count, _, fine in ROUNDS if fine) + 2 * UNSEEN_SEEDS
+    fine_rounds = [index for index, (_, _, fine) in enumerate(ROUNDS) if fine]
+    ranked = UNSEEN_SEEDS * (sum(ROUNDS[index][0] for index in (fine_rounds[0] - 1, *fine_rounds)) + 2)
     looks = len(ARCHETYPES) * SCALES * len(ROUGHNESS)
     total = looks + COVER + sum(count * each for count, each, _ in ROUNDS) + LAST + ranked
     factor = 1.0 if evaluations is None else evaluations / total
@@ -72,7 +73,8 @@ def default_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
         def run(session: Session) -> None:
             session.pool = session.pool[:count]
             _refine_pool(session, scaled(each), fine=fine)
-            if fine:
+            if fine or ROUNDS[index + 1][2]:
+                # What goes on to full resolution is chosen there: families that tie at half of it do not at full.
                 _rank(session)
             else:
                 session.pool.sort(key=lambda c: c.value)

@@ -46,8 +46,9 @@ GRAINS_HANDICAP = 1.1
 PLATES_HANDICAP = 1.1
 """Factors on the distance by how often a family looks like nature where it scores like nature. A folded H, and stripes
 within single cells, fit much and look like little; so do cells that fit together like paving (on rock with plants they were
-five percent nearer than crusts, and looked like cobbles), plates among them; stones look right where they are only almost as near; more numbers
-for pigment or plates fit a few percent by themselves. Tuned by eye on gravel, roughcast, bark and sand."""
+five percent nearer than crusts, and looked like cobbles), plates among them; stones look right where they are only almost
+as near; more numbers for pigment or plates fit a few percent by themselves. Tuned by eye on gravel, roughcast, bark, sand
+and rock."""
 
 OF_STONES = {
     "roughness": "stone_height", "noise.anisotropy": "stone_stretch", "noise.gain": "stone_gain", "shape.0": "stone_profile",
