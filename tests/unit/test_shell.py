@@ -19,7 +19,7 @@ import drjit as dr  # noqa: E402
 
 from voldetail.errors import InputError  # noqa: E402
 from voldetail.scene import signed_distance  # noqa: E402
-from voldetail.scene.mesh_distance import mesh_distance, winding_numbers  # noqa: E402
+from voldetail.scene.mesh_distance import mesh_distance, squared_distances, winding_numbers  # noqa: E402
 from voldetail.scene.setup import ProxySetup  # noqa: E402
 from voldetail.scene.shell import Shell, make_shell  # noqa: E402
 from voldetail.scene.shell_plan import DEFAULT_BUDGET, plan_shell  # noqa: E402
@@ -107,6 +107,14 @@ def test_a_mesh_has_the_distances_of_the_shape_it_is_made_of() -> None:
     error = np.abs(found.ravel() - exact) / edge
     assert error.max() < 5e-3  # where the closest triangle was not among the candidates
     assert np.quantile(error, 0.99) < 1e-4
+
+
+def test_distances_to_triangles_are_those_of_trimesh() -> None:
+    corners, points, index = RNG.normal(size=(50, 3, 3)), RNG.normal(size=(300, 3)) * 2, RNG.integers(0, 50, (300, 4))
+    found = np.sqrt(squared_distances(points, corners, index))
+    for rank in range(4):
+        closest = trimesh.triangles.closest_point(corners[index[:, rank]], points)
+        assert found[:, rank] == pytest.approx(np.linalg.norm(points - closest, axis=1), abs=1e-5)
 
 
 def test_bodies_that_overlap_are_one_and_a_hollow_is_outside() -> None:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from voldetail.errors import InputError
-from voldetail.scene.mesh_distance import MOST_TRIANGLES, TRIANGLES_A_CUBE
 from voldetail.scene.meshes import Mesh, load_mesh, normalise
 from voldetail.scene.proxy import rotation_matrix
 from voldetail.scene.setup import ProxySetup
@@ -26,14 +25,14 @@ SLAB_CELLS = 3
 BYTES_A_CELL = {"simple": 4.0, "mesh": 13.0}
 """Kept and passing: a float of density; for a mesh also one of distance, the winding numbers and their sum."""
 
-BYTES_A_FACET = 1300.0
-"""For each square of an edge's side of a mesh's surface: the triangles it is cut into, and their tree."""
+BYTES_A_FACET = 200.0
+"""For each face of a mesh, and each square of an edge's side of its surface: the triangles it is cut into, and their tree."""
 
 BYTES_AT_LEAST = 2.0e8
 """For what one tile needs while it is computed, and the kernels."""
 
 SECONDS_A_CELL = {"simple": 1.5e-8, "mesh": 6e-8}
-SECONDS_A_BAND_CELL = {"simple": 5e-7, "mesh": 3e-6}
+SECONDS_A_BAND_CELL = {"simple": 5e-7, "mesh": 5e-6}
 """On two cores, with noise of two octaves; measured. Of the order of, and no promise."""
 
 
@@ -152,7 +151,7 @@ def _layout(proxy: ProxySetup, mesh: Mesh | None, edge: float, thickness: float,
     nx, ny, nz = (int(count) for count in np.minimum(counts, 2**30))
     byte_count = cells * BYTES_A_CELL[kind] + BYTES_AT_LEAST
     if mesh is not None:
-        byte_count += BYTES_A_FACET * min(area / edge**2, MOST_TRIANGLES / TRIANGLES_A_CUBE)
+        byte_count += BYTES_A_FACET * (len(mesh.faces) + area / edge**2)
     return ShellPlan(
         proxy, edge, thickness, amplitude, (nz, ny, nx), (float(lower[0]), float(lower[1]), float(lower[2])), depth,
         int(byte_count), cells * SECONDS_A_CELL[kind] + band * SECONDS_A_BAND_CELL[kind], mesh,
