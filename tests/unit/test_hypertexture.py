@@ -126,6 +126,9 @@ def test_a_part_thinner_than_the_shift_gets_no_holes() -> None:
     shell = shell_of(edge=0.02, thickness=0.05, amplitude=0.3, kind="box", size=(1.0, 1.0, 0.1))
     before, after = shell.bake().array(), Hypertexture(shell, detail_of(0.3)).bake().array()
     assert (after[before == 1.0] == 1.0).all()
+    # The lookup at P' itself, for comparison: it comes out on the other side.
+    middles = rows(shell.middles(dr.arange(mi.UInt32, shell.plan.cells)))[before.ravel() == 1.0]
+    assert (shell.density_at(columns(shifted(shell, detail_of(0.3), middles))).numpy() == 0.0).mean() > 0.2
 
 
 def test_the_share_of_matter_at_a_height_is_the_distribution_of_the_relief() -> None:

@@ -19,7 +19,7 @@ from voldetail.detail import Detail  # noqa: E402
 from voldetail.errors import InputError  # noqa: E402
 from voldetail.scene.density_grid import DensityGrid  # noqa: E402
 from voldetail.scene.hypertexture import Hypertexture  # noqa: E402
-from voldetail.scene.isosurface import Isosurface, isosurface  # noqa: E402
+from voldetail.scene.isosurface import Isosurface, isosurface, surface_cost  # noqa: E402
 from voldetail.scene.setup import ProxySetup  # noqa: E402
 from voldetail.scene.shell import Shell, make_shell  # noqa: E402
 from voldetail.scene.shell_plan import plan_shell  # noqa: E402
@@ -171,3 +171,13 @@ def test_noise_of_every_kind_is_closed() -> None:
 def test_what_has_no_surface_is_refused(level: float, words: str) -> None:
     with pytest.raises(InputError, match=words):
         isosurface(grid_of(np.full((3, 3, 3), 0.6)), level)
+
+
+def test_the_cost_is_known_before_and_kept_to() -> None:
+    grid = shell_of(kind="sphere").bake()
+    count, byte_count = surface_cost(grid)
+    # Ambiguous cubes get a vertex more in their middles.
+    assert len(isosurface(grid, least_island=0.0).vertices) == pytest.approx(count, rel=0.03)
+    with pytest.raises(InputError, match=rf"A surface of {count} vertices needs \d+ MB, more than the 1 MB allowed: bake"):
+        isosurface(grid, budget=1 << 20)
+    assert len(isosurface(grid, budget=byte_count).vertices)

@@ -227,6 +227,14 @@ def test_a_grid_beyond_the_budget_says_what_would_do() -> None:
     assert plan_shell(ProxySetup(kind="sphere"), 0.001, 0.05, 0.1, budget).byte_count <= budget
 
 
+def test_a_grid_beyond_all_budgets_is_refused_too() -> None:
+    for edge in (1e-5, 1e-200):
+        with pytest.raises(InputError, match=r"use an edge of at least 0\.00\d+, or allow \d+ MB"):
+            plan_shell(ProxySetup(kind="sphere"), edge, 0.05)
+    with pytest.raises(InputError, match=r"the program alone takes 191 MB, so allow more"):
+        plan_shell(ProxySetup(kind="sphere"), 0.02, 0.05, budget=1000)
+
+
 def test_an_open_mesh_is_refused(tmp_path: Path) -> None:
     box = trimesh.creation.box((1.0, 1.0, 1.0))
     box.update_faces(np.arange(len(box.faces)) > 1)

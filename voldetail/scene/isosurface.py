@@ -31,6 +31,17 @@ CLEARANCE = 1e-4
 faces without area."""
 
 
+BYTES_A_CELL = 24.0
+BYTES_A_VERTEX = 1200.0
+"""At the peak, measured at 128 and 256 cells a side: the grid's copies and slopes; and faces, tables and the noise's slopes."""
+
+DEFAULT_BUDGET = 2 << 30
+"""Bytes: about 1.3 million vertices on a grid of 256 cells a side."""
+
+TILE = 1 << 18
+"""Vertices whose normals are computed at a time."""
+
+
 @dataclass(frozen=True, eq=False)
 class Isosurface:
     """A closed mesh in scene units.
@@ -45,16 +56,23 @@ class Isosurface:
     dropped: int = 0
 
 
+def surface_cost(grid: DensityGrid, level: float = 0.5) -> tuple[int, int]:
+    """Return about how many vertices `isosurface` will make (before crumbs are dropped), and the bytes that it needs at most."""
+    full = np.pad(grid.array(), 1) > level
+    vertices = sum(int(np.count_nonzero(np.diff(full, axis=axis))) for axis in range(3))
+    return vertices, int(BYTES_A_CELL * full.size + BYTES_A_VERTEX * vertices)
+
+
 def isosurface(
     grid: DensityGrid, level: float = 0.5, outward: Callable[[tuple[Any, ...]], tuple[Any, ...]] | None = None,
-    least_island: float = LEAST_ISLAND,
+    least_island: float = LEAST_ISLAND, budget: int = DEFAULT_BUDGET,
 ) -> Isosurface:
     """Return where ``grid`` has the density ``level``, closed where matter meets the box.
 
     outward: from points (three Dr.Jit arrays) to a vector along the normal there, as `Hypertexture.outward_at`; without it
     the grid's own differences are taken, on a sphere with a shell of three cells up to 1.4 degrees off. Vertices on the box
     itself, where matter is cut, have the normals of their faces. Bodies of less than ``least_island`` times the volume of
-    the largest are dropped. Raises InputError where there is no surface.
+    the largest are dropped. Raises InputError where there is no surface, or where it takes more than ``budget`` bytes.
     """
     if not 0.0 < level < 1.0:
         raise InputError(f"The level of a surface is {level:g}; it has to be over 0 and under 1.")
@@ -63,6 +81,13 @@ def isosurface(
         raise InputError(
             f"There is no surface at the level {level:g}: the densest point of the grid has {float(density.max()):.3g}; use a"
             " lower level, a finer grid or a thicker object."
+        )
+    count, byte_count = surface_cost(grid, level)
+    if byte_count > budget:
+        raise InputError(
+            f"A surface of {count} vertices needs {byte_count / 2**20:.0f} MB, more than the {budget / 2**20:.0f} MB allowed:"
+            f" bake the density with an edge of {grid.edge * (byte_count / budget) ** 0.5:.3g} scene units or more, or allow"
+            f" {byte_count / 2**20:.0f} MB."
         )
     close = np.abs(density - level) < CLEARANCE
     density[close] = level + CLEARANCE * np.where(density[close] < level, -1.0, 1.0)
@@ -105,8 +130,12 @@ def _normals(
     vertices: NDArray[np.float32], outward: Callable[[tuple[Any, ...]], tuple[Any, ...]]
 ) -> NDArray[np.float64]:
     mi = mitsuba()
-    found = outward(tuple(mi.Float(np.ascontiguousarray(vertices[:, axis])) for axis in range(3)))
-    normals = np.stack([np.broadcast_to(np.asarray(v), len(vertices)) for v in found], axis=1).astype(np.float64)
+    normals = np.empty((len(vertices), 3))
+    for start in range(0, len(vertices), TILE):
+        part = vertices[start : start + TILE]
+        found = outward(tuple(mi.Float(np.ascontiguousarray(part[:, axis])) for axis in range(3)))
+        for axis in range(3):
+            normals[start : start + TILE, axis] = np.asarray(found[axis])
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     return np.divide(normals, length, out=np.zeros_like(normals), where=np.isfinite(length) & (length > 0.0))
 

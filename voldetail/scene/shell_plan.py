@@ -95,13 +95,14 @@ def plan_shell(
     plan = _layout(proxy, mesh, edge, thickness, amplitude)
     if plan.byte_count > budget:
         fitting = _fitting_edge(plan, budget)
-        smaller = (
-            f"use an edge of at least {fitting:.3g}" if fitting * LEAST_CELLS <= thickness
-            else f"use an edge of at least {fitting:.3g} (and a thickness of at least {fitting * LEAST_CELLS:.3g})"
-        )
+        advice = f"use an edge of at least {fitting:.3g}"
+        if fitting * LEAST_CELLS > thickness:
+            advice += f" (and a thickness of at least {fitting * LEAST_CELLS:.3g})"
+        if math.isinf(fitting):
+            advice = f"the program alone takes {BYTES_AT_LEAST / 2**20:.0f} MB, so allow more"
         raise InputError(
             f"A grid of {plan.sentence.split(',')[0]} needs {plan.byte_count / 2**20:.0f} MB, more than the"
-            f" {budget / 2**20:.0f} MB allowed: {smaller}, or allow {math.ceil(plan.byte_count / 2**20)} MB."
+            f" {budget / 2**20:.0f} MB allowed: {advice}, or allow {math.ceil(plan.byte_count / 2**20)} MB."
         )
     return plan
 
@@ -145,25 +146,28 @@ def _layout(proxy: ProxySetup, mesh: Mesh | None, edge: float, thickness: float,
     counts = np.maximum(np.ceil((high - low) / edge * (1 - 1e-6)), 1.0)
     # What rounding up added is shared by both sides: all middles of a plane that is not turned are within its slab.
     lower = (low + high - counts * edge) / 2
+    counts = np.minimum(counts, 1e9)  # an edge of 1e-300 is refused for its memory, not for an overflow
     cells = float(counts.prod())
     kind = "simple" if mesh is None else "mesh"
-    band = min(area * (thickness + amplitude) / edge**3, cells)
-    nx, ny, nz = (int(count) for count in np.minimum(counts, 2**30))
+    band = min(area * (thickness + amplitude) / edge / edge / edge, cells)
+    nx, ny, nz = (int(count) for count in counts)
     byte_count = cells * BYTES_A_CELL[kind] + BYTES_AT_LEAST
     if mesh is not None:
-        byte_count += BYTES_A_FACET * (len(mesh.faces) + area / edge**2)
+        byte_count += BYTES_A_FACET * (len(mesh.faces) + area / edge / edge)
     return ShellPlan(
         proxy, edge, thickness, amplitude, (nz, ny, nx), (float(lower[0]), float(lower[1]), float(lower[2])), depth,
-        int(byte_count), cells * SECONDS_A_CELL[kind] + band * SECONDS_A_BAND_CELL[kind], mesh,
+        int(min(byte_count, 1e18)), cells * SECONDS_A_CELL[kind] + band * SECONDS_A_BAND_CELL[kind], mesh,
     )
 
 
 def _fitting_edge(plan: ShellPlan, budget: int) -> float:
-    """Return the least edge, to two digits, with which the plan fits the budget; infinity where none does."""
-    edge = plan.edge
+    """Return the least edge, rounded up to three digits, with which the plan fits the budget; infinity where none does."""
+    edge, byte_count = plan.edge, plan.byte_count
     while edge < 1e6:
-        edge *= 1.02
-        if _layout(plan.proxy, plan.mesh, edge, plan.thickness, plan.amplitude).byte_count <= budget:
+        # Cells go with the third power; what does not shrink makes this too small rather than too large.
+        edge *= max(1.02, (byte_count / max(budget, 1)) ** (1 / 3) * 0.9)
+        byte_count = _layout(plan.proxy, plan.mesh, edge, plan.thickness, plan.amplitude).byte_count
+        if byte_count <= budget:
             digits = 10.0 ** (math.floor(math.log10(edge)) - 2)
             return math.ceil(edge / digits) * digits
     return math.inf
