@@ -48,7 +48,7 @@ def make_proxy(setup: ProxySetup, edge: float, domain: str = "solid", limit: int
     table, faces = split_long_edges(np.concatenate(columns, axis=1), faces, edge, limit)
     positions, normals = _reproject(setup.kind, setup.extent, table[:, :3], table[:, 3:6])
     coordinates = _domain(setup, positions, table[:, 6:8] if uv is not None else None, domain)
-    turn = _rotation(setup.rotation)
+    turn = rotation_matrix(setup.rotation)
     return Proxy(
         positions=(positions @ turn.T + np.asarray(setup.position)).astype(np.float32),
         normals=(normals @ turn.T).astype(np.float32),
@@ -121,7 +121,7 @@ def _domain(
     return flat
 
 
-def _rotation(degrees: tuple[float, float, float]) -> NDArray[np.float64]:
+def rotation_matrix(degrees: tuple[float, float, float]) -> NDArray[np.float64]:
     """Return the matrix that turns about x, then y, then z."""
     ax, ay, az = (math.radians(v) for v in degrees)
     cx, sx, cy, sy, cz, sz = math.cos(ax), math.sin(ax), math.cos(ay), math.sin(ay), math.cos(az), math.sin(az)

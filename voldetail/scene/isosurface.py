@@ -1,0 +1,153 @@
+"""The surface of a density at a level, as a closed triangle mesh: any renderer and any modeller takes it.
+
+By marching cubes on the grid (Lewiner, Lopes, Vieira & Tavares 2003, "Efficient implementation of marching cubes' cases with
+topological guarantees", in scikit-image), cleaned, with normals from the density's own gradient. Faces are as large as the
+grid's cubes; normals know the noise between them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.ndimage import map_coordinates, sobel
+from scipy.sparse import csgraph
+from skimage.measure import marching_cubes
+
+from voldetail.backend import mitsuba
+from voldetail.errors import InputError
+from voldetail.scene.density_grid import DensityGrid
+
+LEAST_ISLAND = 1e-4
+"""Share of the volume of the largest body below which a body that floats free, or a bubble, is dropped: crumbs of a few cells."""
+
+CLEARANCE = 1e-4
+"""Of the range 0 to 1: densities as close to the level as this are moved off it, else corners of cubes become vertices of many
+faces without area."""
+
+
+BYTES_A_CELL = 24.0
+BYTES_A_VERTEX = 1200.0
+"""At the peak, measured at 128 and 256 cells a side: the grid's copies and slopes; and faces, tables and the noise's slopes."""
+
+DEFAULT_BUDGET = 2 << 30
+"""Bytes: about 1.3 million vertices on a grid of 256 cells a side."""
+
+TILE = 1 << 18
+"""Vertices whose normals are computed at a time."""
+
+
+@dataclass(frozen=True, eq=False)
+class Isosurface:
+    """A closed mesh in scene units.
+
+    vertices (V, 3) and unit normals (V, 3), outwards; faces (F, 3), counter-clockwise from outside. dropped: how many
+    bodies were too small to keep.
+    """
+
+    vertices: NDArray[np.float32]
+    faces: NDArray[np.uint32]
+    normals: NDArray[np.float32]
+    dropped: int = 0
+
+
+def surface_cost(grid: DensityGrid, level: float = 0.5) -> tuple[int, int]:
+    """Return about how many vertices `isosurface` will make (before crumbs are dropped), and the bytes that it needs at most."""
+    full = np.pad(grid.array(), 1) > level
+    vertices = sum(int(np.count_nonzero(np.diff(full, axis=axis))) for axis in range(3))
+    return vertices, int(BYTES_A_CELL * full.size + BYTES_A_VERTEX * vertices)
+
+
+def isosurface(
+    grid: DensityGrid, level: float = 0.5, outward: Callable[[tuple[Any, ...]], tuple[Any, ...]] | None = None,
+    least_island: float = LEAST_ISLAND, budget: int = DEFAULT_BUDGET,
+) -> Isosurface:
+    """Return where ``grid`` has the density ``level``, closed where matter meets the box.
+
+    outward: from points (three Dr.Jit arrays) to a vector along the normal there, as `Hypertexture.outward_at`; without it
+    the grid's own differences are taken, on a sphere with a shell of three cells up to 1.4 degrees off. Vertices on the box
+    itself, where matter is cut, have the normals of their faces. Bodies of less than ``least_island`` times the volume of
+    the largest are dropped. Raises InputError where there is no surface, or where it takes more than ``budget`` bytes.
+    """
+    if not 0.0 < level < 1.0:
+        raise InputError(f"The level of a surface is {level:g}; it has to be over 0 and under 1.")
+    density = np.pad(grid.array(), 1)  # nothing outside the box: matter that reaches it is closed there
+    if not density.max() > level:
+        raise InputError(
+            f"There is no surface at the level {level:g}: the densest point of the grid has {float(density.max()):.3g}; use a"
+            " lower level, a finer grid or a thicker object."
+        )
+    count, byte_count = surface_cost(grid, level)
+    if byte_count > budget:
+        raise InputError(
+            f"A surface of {count} vertices needs {byte_count / 2**20:.0f} MB, more than the {budget / 2**20:.0f} MB allowed:"
+            f" bake the density with an edge of {grid.edge * (byte_count / budget) ** 0.5:.3g} scene units or more, or allow"
+            f" {byte_count / 2**20:.0f} MB."
+        )
+    close = np.abs(density - level) < CLEARANCE
+    density[close] = level + CLEARANCE * np.where(density[close] < level, -1.0, 1.0)
+    # scikit-image's "descent" is dense matter inside; its axes are ours backwards, and it winds its faces for that order.
+    corners, faces, _, _ = marching_cubes(density, level, gradient_direction="descent")
+    mesh = trimesh.Trimesh(corners[:, ::-1].astype(np.float64) - 0.5, faces, process=False)
+    mesh.merge_vertices()
+    mesh.update_faces(mesh.nondegenerate_faces(height=0.0))
+    mesh.remove_unreferenced_vertices()
+    cells, faces, dropped = _without_crumbs(np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int64), least_island)
+    mesh = trimesh.Trimesh(cells, faces, process=False)
+    vertices = (cells * grid.edge + np.asarray(grid.lower)).astype(np.float32)
+    normals = _normals(vertices, outward) if outward is not None else _differences(density, cells)
+    upper = np.asarray(grid.shape[::-1]) - 0.5
+    cut = (cells < 0.5).any(axis=1) | (cells > upper).any(axis=1) | ~(np.linalg.norm(normals, axis=1) > 0.0)
+    normals[cut] = np.asarray(mesh.vertex_normals)[cut]
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    return Isosurface(vertices, faces.astype(np.uint32), normals.astype(np.float32), dropped)
+
+
+def _without_crumbs(
+    vertices: NDArray[np.float64], faces: NDArray[np.int64], least: float
+) -> tuple[NDArray[np.float64], NDArray[np.int64], int]:
+    """Return the mesh without the bodies and bubbles of less than ``least`` of the largest's volume, and how many they were."""
+    ends = np.concatenate([faces[:, :2], faces[:, 1:]])
+    graph = sparse.coo_matrix((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(len(vertices),) * 2)
+    count, label = csgraph.connected_components(graph, directed=False)
+    body = label[faces[:, 0]]
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    volume = np.abs(np.bincount(body, np.einsum("ij,ij->i", a, np.cross(b, c)) / 6, minlength=count))
+    keep = volume >= least * volume.max()
+    if keep.all():
+        return vertices, faces, 0
+    kept = faces[keep[body]]
+    used, compact = np.unique(kept, return_inverse=True)
+    return vertices[used], compact.reshape(-1, 3).astype(np.int64), int(np.count_nonzero(~keep))
+
+
+def _normals(
+    vertices: NDArray[np.float32], outward: Callable[[tuple[Any, ...]], tuple[Any, ...]]
+) -> NDArray[np.float64]:
+    mi = mitsuba()
+    normals = np.empty((len(vertices), 3))
+    for start in range(0, len(vertices), TILE):
+        part = vertices[start : start + TILE]
+        found = outward(tuple(mi.Float(np.ascontiguousarray(part[:, axis])) for axis in range(3)))
+        for axis in range(3):
+            normals[start : start + TILE, axis] = np.asarray(found[axis])
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.divide(normals, length, out=np.zeros_like(normals), where=np.isfinite(length) & (length > 0.0))
+
+
+def _differences(density: NDArray[np.float32], cells: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return minus the padded grid's direction of steepest ascent, interpolated at the vertices.
+
+    Sobel's differences lean less to the axes than plain ones: 1.4 degrees for 2.9 on a sphere with a shell of three cells.
+    """
+    normals = np.empty((len(cells), 3))
+    middles = cells.T[::-1] + 0.5
+    for axis in range(3):
+        normals[:, axis] = -map_coordinates(sobel(density, axis=2 - axis), middles, order=1)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0.0)

@@ -1,0 +1,173 @@
+"""How large a grid about an object is, and what it costs, stated before anything is computed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from voldetail.errors import InputError
+from voldetail.scene.meshes import Mesh, load_mesh, normalise
+from voldetail.scene.proxy import rotation_matrix
+from voldetail.scene.setup import ProxySetup
+from voldetail.scene.topology import crosses
+
+DEFAULT_BUDGET = 1 << 30
+"""Bytes: a cube of 630 cells a side for the simple shapes, of 430 for meshes, beside the rest of the program."""
+
+LEAST_CELLS = 2
+"""Cells across the shell below which it would be lost between two middles."""
+
+SLAB_CELLS = 3
+"""Cells of full density below a plane's shell."""
+
+BYTES_A_CELL = {"simple": 4.0, "mesh": 13.0}
+"""Kept and passing: a float of density; for a mesh also one of distance, the winding numbers and their sum."""
+
+BYTES_A_FACET = 200.0
+"""For each face of a mesh, and each square of an edge's side of its surface: the triangles it is cut into, and their tree."""
+
+BYTES_AT_LEAST = 2.0e8
+"""For what one tile needs while it is computed, and the kernels."""
+
+SECONDS_A_CELL = {"simple": 1.5e-8, "mesh": 6e-8}
+SECONDS_A_BAND_CELL = {"simple": 5e-7, "mesh": 5e-6}
+"""On two cores, with noise of two octaves; measured. Of the order of, and no promise."""
+
+
+@dataclass(frozen=True, eq=False)
+class ShellPlan:
+    """The grid of a shell, and what it will take.
+
+    edge, thickness, amplitude in scene units; shape (nz, ny, nx) and lower as those of a DensityGrid; depth: how far a
+    plane's slab reaches down. byte_count: memory at the most. seconds: about how long density and noise take. mesh: the
+    checked mesh in its own frame, None for the simple shapes.
+    """
+
+    proxy: ProxySetup
+    edge: float
+    thickness: float
+    amplitude: float
+    shape: tuple[int, int, int]
+    lower: tuple[float, float, float]
+    depth: float
+    byte_count: int
+    seconds: float
+    mesh: Mesh | None = None
+
+    @property
+    def cells(self) -> int:
+        """How many cubes the grid has."""
+        return math.prod(self.shape)
+
+    @property
+    def sentence(self) -> str:
+        """The plan in words, for the user to read before it is carried out."""
+        nz, ny, nx = self.shape
+        return (
+            f"{nx} x {ny} x {nz} cells of {self.edge:.3g} scene units, {self.byte_count / 2**20:.0f} MB,"
+            f" about {max(self.seconds, 1.0):.0f} s"
+        )
+
+
+def plan_shell(
+    proxy: ProxySetup, edge: float, thickness: float, amplitude: float = 0.0, budget: int = DEFAULT_BUDGET
+) -> ShellPlan:
+    """Return the grid of cubes of ``edge`` about ``proxy`` with a shell of ``thickness`` and room to shift by ``amplitude``.
+
+    A good ``edge`` is a pixel of the picture; a good ``thickness`` for solid matter three edges. Raises InputError for a
+    length that is not over 0, a shell thinner than LEAST_CELLS edges or thicker than the object, an open mesh, and a grid
+    that takes more than ``budget`` bytes.
+    """
+    for name, value in (("cell's edge", edge), ("shell's thickness", thickness)):
+        if not (math.isfinite(value) and value > 0):
+            raise InputError(f"The {name} is {value:g}; it has to be a length over 0 scene units.")
+    if not (math.isfinite(amplitude) and amplitude >= 0):
+        raise InputError(f"The amplitude is {amplitude:g}; it has to be 0 scene units or more.")
+    if thickness < LEAST_CELLS * edge * (1 - 1e-9):
+        raise InputError(
+            f"The shell is {thickness:g} scene units thick, less than {LEAST_CELLS} cells of {edge:g}: it would fall between"
+            f" them; use a thickness of at least {LEAST_CELLS * edge:.3g} or an edge of at most {thickness / LEAST_CELLS:.3g}."
+        )
+    mesh = _closed_mesh(proxy) if proxy.kind == "mesh" else None
+    _check_inside(proxy, thickness)
+    plan = _layout(proxy, mesh, edge, thickness, amplitude)
+    if plan.byte_count > budget:
+        fitting = _fitting_edge(plan, budget)
+        advice = f"use an edge of at least {fitting:.3g}"
+        if fitting * LEAST_CELLS > thickness:
+            advice += f" (and a thickness of at least {fitting * LEAST_CELLS:.3g})"
+        if math.isinf(fitting):
+            advice = f"the program alone takes {BYTES_AT_LEAST / 2**20:.0f} MB, so allow more"
+        raise InputError(
+            f"A grid of {plan.sentence.split(',')[0]} needs {plan.byte_count / 2**20:.0f} MB, more than the"
+            f" {budget / 2**20:.0f} MB allowed: {advice}, or allow {math.ceil(plan.byte_count / 2**20)} MB."
+        )
+    return plan
+
+
+def _closed_mesh(proxy: ProxySetup) -> Mesh:
+    assert proxy.mesh is not None
+    mesh = normalise(load_mesh(proxy.mesh), max(proxy.extent))
+    if not mesh.watertight:
+        raise InputError(
+            f"The mesh {proxy.mesh} is not closed, so it has no inside to fill: close its holes (in Blender: Mesh > Clean Up"
+            " > Fill Holes, and give a sheet a thickness with the Solidify modifier), or put the detail on it as displacement."
+        )
+    return mesh
+
+
+def _check_inside(proxy: ProxySetup, thickness: float) -> None:
+    """Refuse a shell that leaves nothing solid in a simple shape; for a mesh this is known once its distances are."""
+    if proxy.kind not in ("plane", "mesh") and thickness >= min(proxy.extent):
+        raise InputError(
+            f"The shell is {thickness:g} scene units thick, as much as the {proxy.kind} itself at its thinnest"
+            f" ({min(proxy.extent):g}), so nothing of it would be solid: use a smaller thickness."
+        )
+
+
+def _layout(proxy: ProxySetup, mesh: Mesh | None, edge: float, thickness: float, amplitude: float) -> ShellPlan:
+    above = amplitude + thickness / 2 + edge
+    depth = max(proxy.extent[2], thickness / 2 + SLAB_CELLS * edge)
+    if mesh is not None:
+        corners = mesh.vertices
+        area = 0.5 * float(np.linalg.norm(crosses(mesh.vertices, mesh.faces), axis=1).sum())
+    else:
+        half = np.asarray(proxy.extent) / 2
+        # A plane's box holds its slab, and the room above it; the others leave room on all sides.
+        low, high = (np.array([*-half[:2], -depth]), np.array([*half[:2], above])) if proxy.kind == "plane" else (-half, half)
+        corners = np.array([[(low, high)[bit >> axis & 1][axis] for axis in range(3)] for bit in range(8)])
+        w, h, d = proxy.extent
+        area = w * h if proxy.kind == "plane" else 2 * (w * h + h * d + d * w)
+    placed = corners @ rotation_matrix(proxy.rotation).T + np.asarray(proxy.position)
+    margin = 0.0 if proxy.kind == "plane" else above
+    low, high = placed.min(axis=0) - margin, placed.max(axis=0) + margin
+    counts = np.maximum(np.ceil((high - low) / edge * (1 - 1e-6)), 1.0)
+    # What rounding up added is shared by both sides: all middles of a plane that is not turned are within its slab.
+    lower = (low + high - counts * edge) / 2
+    counts = np.minimum(counts, 1e9)  # an edge of 1e-300 is refused for its memory, not for an overflow
+    cells = float(counts.prod())
+    kind = "simple" if mesh is None else "mesh"
+    band = min(area * (thickness + amplitude) / edge / edge / edge, cells)
+    nx, ny, nz = (int(count) for count in counts)
+    byte_count = cells * BYTES_A_CELL[kind] + BYTES_AT_LEAST
+    if mesh is not None:
+        byte_count += BYTES_A_FACET * (len(mesh.faces) + area / edge / edge)
+    return ShellPlan(
+        proxy, edge, thickness, amplitude, (nz, ny, nx), (float(lower[0]), float(lower[1]), float(lower[2])), depth,
+        int(min(byte_count, 1e18)), cells * SECONDS_A_CELL[kind] + band * SECONDS_A_BAND_CELL[kind], mesh,
+    )
+
+
+def _fitting_edge(plan: ShellPlan, budget: int) -> float:
+    """Return the least edge, rounded up to three digits, with which the plan fits the budget; infinity where none does."""
+    edge, byte_count = plan.edge, plan.byte_count
+    while edge < 1e6:
+        # Cells go with the third power; what does not shrink makes this too small rather than too large.
+        edge *= max(1.02, (byte_count / max(budget, 1)) ** (1 / 3) * 0.9)
+        byte_count = _layout(plan.proxy, plan.mesh, edge, plan.thickness, plan.amplitude).byte_count
+        if byte_count <= budget:
+            digits = 10.0 ** (math.floor(math.log10(edge)) - 2)
+            return math.ceil(edge / digits) * digits
+    return math.inf
