@@ -24,6 +24,9 @@ from voldetail.scene.lamp import Lamp
 WIDEST = 4
 """Columns at most along a side, in cells of the box's longest one: rays of a lamp close to the box fan out without bound."""
 
+SLACK = 1e-3
+"""Cells by which a column may miss the box and yet be in it: those that run along a face are not to be lost to rounding."""
+
 
 class LightDepth:
     """Density between points of a grid's box and a distant light (``lamp.direction``) or a near one."""
@@ -92,7 +95,8 @@ class LightDepth:
         (u, v), w = self.others, self.axis
         # Slice 0 is the nearest to the light; node k lies between slices k - 1 and k, node 0 on the nearest face.
         self.nodes = dr.zeros(mi.Float, size * (grid.shape[2 - w] + 1))
-        dr.eval(self.nodes, foot, slope, length)
+        shift = [self.sign * dr.select(dr.abs(x) < 1e-6, 1e-6, x) for x in slope]  # never 0: it divides
+        dr.eval(self.nodes, foot, slope, shift, length)
         slices, stride = self.slices, dr.opaque(mi.UInt32, size)
 
         def more(k: Any, depth: Any) -> Any:
@@ -101,14 +105,18 @@ class LightDepth:
         def step(k: Any, depth: Any) -> tuple[Any, Any]:
             along = (mi.Float(slices - k) - 0.5) * self.edge
             index = dr.select(self.sign > 0.0, slices - 1 - k, k) * steps[w]
+            # In cells from the box's corner, in the middle of the slice; a column may enter or leave within a slice.
             place = [
-                (foot[i] + self.sign * along * slope[i] - self.lower[a]) / self.edge - 0.5 for i, a in enumerate((u, v))
+                (foot[i] + self.sign * along * slope[i] - self.lower[a]) / self.edge for i, a in enumerate(self.others)
             ]
-            inside = (
-                (place[0] >= -0.5) & (place[1] >= -0.5)
-                & (place[0] <= mi.Float(cells[u]) - 0.5) & (place[1] <= mi.Float(cells[v]) - 0.5)
-            )
-            density = self._bilinear(grid.density, place, [cells[u], cells[v]], [steps[u], steps[v]], index, inside)
+            enters, leaves = mi.Float(-0.5), mi.Float(0.5)
+            for p, aside, a in zip(place, shift, self.others, strict=True):
+                one, other = (-SLACK - p) / aside, (mi.Float(cells[a]) + SLACK - p) / aside
+                enters, leaves = dr.maximum(enters, dr.minimum(one, other)), dr.minimum(leaves, dr.maximum(one, other))
+            share = dr.maximum(leaves - enters, 0.0)
+            middle = [p + 0.5 * (enters + leaves) * aside - 0.5 for p, aside in zip(place, shift, strict=True)]
+            counts, strides = [cells[u], cells[v]], [steps[u], steps[v]]
+            density = self._bilinear(grid.density, middle, counts, strides, index, share > 0.0) * share
             depth = depth + density * length
             dr.scatter(self.nodes, depth, (k + 1) * stride + lane)
             return k + 1, depth

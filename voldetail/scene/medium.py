@@ -66,5 +66,5 @@ def check(grid: DensityGrid) -> None:
     wrong = int(np.asarray(dr.count(~((grid.density >= 0.0) & (grid.density <= 1.0))))[0])
     if wrong:
         raise InputError(
-            f"The density grid holds {wrong} values that are below 0, above 1 or not numbers: clip it to 0 to 1."
+            f"The density grid's values have to be numbers from 0 to 1, but {wrong} of its {wanted} are not: clip them."
         )
