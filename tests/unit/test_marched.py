@@ -113,14 +113,16 @@ def test_errors_fall_with_the_square_of_the_step(medium: Medium, perspective: bo
 
 
 def test_skipping_empty_blocks_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    grid, walked = cloud(40), []
+    # Single cells, some of which lie right behind an empty block.
+    cells = np.random.default_rng(2).random((40, 40, 40)) < 0.001
+    grid = sampled(lambda x, y, z: cells, (40, 40, 40), edge=2 / 40)
     for view in (VIEW, View(-1.1, 1.1, -1.1, 1.1, 48, 48, perspective=True)):
-        skipped = look(grid, Medium(5.0), view=view)
+        skipped = look(grid, Medium(20.0), view=view)
         with monkeypatch.context() as patch:
             patch.setattr(marched.Emptiness, "ahead", lambda self, p, d: (mitsuba().Bool(False), mitsuba().Float(0.0)))
-            walked = look(grid, Medium(5.0), view=view)
+            walked = look(grid, Medium(20.0), view=view)
         for part in PARTS:
-            assert np.allclose(getattr(skipped, part), getattr(walked, part), atol=2e-5), part
+            assert np.allclose(getattr(skipped, part), getattr(walked, part), atol=1e-4), part
 
 
 def test_rays_that_end_early_miss_less_than_the_cutoff(monkeypatch: pytest.MonkeyPatch) -> None:

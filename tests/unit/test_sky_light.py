@@ -40,6 +40,23 @@ def test_a_one_sided_sky_is_whole_for_a_plane_that_faces_it_and_half_for_a_wall(
     assert share(sky, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(0.5, abs=1e-3)
 
 
+@pytest.mark.parametrize("cosine", [0.8, 0.5, 0.2])
+def test_a_tilted_plane_sees_a_one_sided_sky_above_its_horizon_and_the_plane_s(cosine: float) -> None:
+    """(1 + cos) / 2, the cosine-weighted share of a half sky; the first two orders give it exactly."""
+    sky = SkyLight(sampled(lambda x, y, z: 0 * x), 5.0, one_sided=True)
+    normal = (0.6 * (1 - cosine**2) ** 0.5, -0.8 * (1 - cosine**2) ** 0.5, cosine)
+    assert share(sky, (0.0, 0.0, 0.0), normal) == pytest.approx((1 + cosine) / 2, abs=0.01)
+
+
+@pytest.mark.parametrize("g", [0.4, 0.0, -0.4])
+def test_a_forward_medium_sends_little_of_the_sky_behind_the_viewer_back_to_him(g: float) -> None:
+    """Share of Henyey and Greenstein's function on cosines below 0, (1 - g^2) / 2g (1 / sqrt(1 + g^2) - 1 / (1 + g))."""
+    wanted = (1 - g * g) / (2 * g) * ((1 + g * g) ** -0.5 - 1 / (1 + g)) if g else 0.5
+    sky = SkyLight(sampled(lambda x, y, z: 0 * x), 5.0, one_sided=True)
+    found = sky.scattered(points(np.zeros((1, 3))), mitsuba().Vector3f(*UP), g)[0]
+    assert found == pytest.approx(wanted, abs=0.03)
+
+
 def test_above_an_opaque_floor_a_plane_sees_the_sky_and_a_wall_half_of_it() -> None:
     floor = sampled(lambda x, y, z: np.where(z < 0, 1.0, 0.0), (32, 64, 64), (-2.0, -2.0, -1.0), 1 / 16)
     sky = SkyLight(floor, 200.0, one_sided=False)
