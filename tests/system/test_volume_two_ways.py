@@ -8,7 +8,8 @@ import pytest
 from tests.system.scenes import detail
 from tests.unit.densities import cloud, slab, sphere
 from tests.unit.test_marched import HEIGHTS, phase
-from voldetail.render import components, traced_picture
+from voldetail.render import Components, components, traced_picture
+from voldetail.scene.density_grid import DensityGrid
 from voldetail.scene.lamp import Lamp
 from voldetail.scene.marched import MarchedVolume
 from voldetail.scene.medium import Medium
@@ -23,7 +24,7 @@ WHOLE = View(-1.0, 1.0, -1.0, 1.0, 32, 32)
 OBLIQUE = Lamp(direction=(0.48, 0.36, 0.8))
 
 
-def marched(grid, medium, lamp=OBLIQUE, view=WHOLE):
+def marched(grid: DensityGrid, medium: Medium, lamp: Lamp = OBLIQUE, view: View = WHOLE) -> Components:
     volume = MarchedVolume(view)
     volume.fill(grid, medium)
     return components(volume, lamp)
@@ -44,6 +45,16 @@ def test_a_black_medium_lets_the_sky_through_as_beer_and_lambert_say(name: str, 
     assert abs(through - wanted) < 4 * noise
     assert through == pytest.approx(wanted, rel=0.01)
     assert 1 - marched(grid, medium, view=MIDDLE).covered == pytest.approx(through, rel=0.01)
+
+
+def test_a_background_shows_through_as_the_marcher_covers_it() -> None:
+    grid, medium = cloud(24), Medium(3.0, 0.0)
+    black = TracedVolume(grid, medium, WHOLE, OBLIQUE, albedo=0.0)
+    through = traced_picture(black, 256, 0.7)[..., 0] / 0.7
+    covered = marched(grid, medium).covered
+    assert np.abs(1 - covered - through).mean() < 0.02  # noise
+    assert 1 - covered.mean() == pytest.approx(through.mean(), rel=0.005)
+    assert 0.2 < covered.mean() < 0.6
 
 
 @pytest.mark.parametrize("g", [0.0, 0.5, -0.4])
@@ -89,7 +100,10 @@ def test_a_white_furnace_stays_white(extinction: float, g: float) -> None:
 
 
 def test_a_hard_ball_is_shaded_as_the_mesh_of_a_ball() -> None:
-    """Where both are seen whole. A density is never quite hard: its silhouette is about a cell wider."""
+    """Where both are seen whole. A density is never quite hard: its silhouette is about a cell wider.
+
+    Measured at 40 and 80 cells: diffuse 0.038, 0.027 apart; ambient 0.036, 0.018; area 1.18, 1.09 of the mesh's.
+    """
     view = View(-1.0, 1.0, -1.0, 1.0, 48, 48)
     mesh = MeshSurface(make_proxy(ProxySetup(kind="sphere", size=(1.4, 1.4, 1.4)), view.pixel), view)
     mesh.update(detail(relief__amplitude=0.0))
@@ -100,7 +114,7 @@ def test_a_hard_ball_is_shaded_as_the_mesh_of_a_ball() -> None:
     assert errors[1] < 0.03, errors
     assert errors[1] < 0.75 * errors[0]
     assert np.abs(found[1].ambient - wanted.ambient)[inner].mean() < 0.04
-    assert np.abs(found[1].covered - wanted.covered).mean() < 0.06 * wanted.covered.mean() * 2
+    assert 1 < found[1].covered.mean() / wanted.covered.mean() < 1.12 < found[0].covered.mean() / wanted.covered.mean() < 1.2
     lit = inner & (wanted.diffuse > 0.3)
     assert found[1].diffuse[lit].mean() == pytest.approx(wanted.diffuse[lit].mean(), rel=0.02)
 

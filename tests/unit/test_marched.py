@@ -112,6 +112,17 @@ def test_errors_fall_with_the_square_of_the_step(medium: Medium, perspective: bo
             assert errors[0] / errors[2] > 2 ** (2 * 1.5), (part, errors)
 
 
+def test_a_solid_has_no_rings_where_steps_meet_its_surface() -> None:
+    """Fixed steps cut a hard surface in rings; at half a cell they are below what 8 bits show of a shaded ball.
+
+    Largest differences in D from steps of 1/16, cells of optical thickness 4: at 1/4 0.0009, at 1/2 0.0037, at 1 0.018.
+    """
+    grid, medium, view = sphere(48), Medium(4.0 * 24), View(-1.0, 1.0, -1.0, 1.0, 48, 48, perspective=True)
+    fine, usual, coarse = (look(grid, medium, view=view, step=step, subsamples=2) for step in (1 / 16, 0.5, 1.0))
+    assert np.abs(usual.diffuse - fine.diffuse).max() < 0.007
+    assert np.abs(coarse.diffuse - fine.diffuse).max() > 0.01
+
+
 def test_skipping_empty_blocks_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     # Single cells, some of which lie right behind an empty block.
     cells = np.random.default_rng(2).random((40, 40, 40)) < 0.001
