@@ -37,7 +37,7 @@ body, which has no side to shade and reflects evenly: a quarter of the light, th
 LIFT, SKY_LIFT = 2.5, 1.5
 """Edges by which a surface's place is lifted along its normal before it looks for the light, and edges of the coarse grid
 before it looks for the sky: a surface is not to be hidden by its own thickness. On a sphere whose density rises within 2
-cells, the lit side is then within 2 % of Lambert's law and the sky's share within 4 % of 1; without, both lose half."""
+cells, the lit side is then within 2 % of Lambert's law and the sky's share within 4 % of 1; without, both lose half or more."""
 
 
 class MarchedVolume:

@@ -4,7 +4,7 @@
 
 T_k: transmittance towards the sky in direction w_k, one of the twelve corners of an icosahedron (they integrate
 polynomials to degree 5 exactly, so a and b are the first two orders of spherical harmonics). A surface with normal n
-then sees the cosine-weighted share  a + 2/3 b . n  (Ramamoorthi & Hanrahan 2001, eq. 8: the factors 1 and 2/3): 1 on a
+then sees the cosine-weighted share  a + 2/3 b . n  (Ramamoorthi & Hanrahan 2001: the factors 1 and 2/3): 1 on a
 bare plane, where a = 1/2 and b = 3/4 n, and 1 where nothing is in the way. A medium with mean cosine g seen from
 direction v scatters  a - g b . v.
 
@@ -26,8 +26,8 @@ from voldetail.scene.light_depth import LightDepth
 from voldetail.scene.lookup import Lookup, cells_of
 
 COARSE = 32
-"""Cells along the longest side of the coarse copy: the twelve sweeps then cost less than the one of the light on the
-grid itself, from 64 cubed on."""
+"""Cells along the longest side of the coarse copy: the twelve sweeps then take 24 to 32 ms, for a grid of 64 cubed as for
+one of 128, on which the one for the light takes 40."""
 
 TURN = 0.4
 """Angle in radians by which the icosahedron is turned about z. Of those tried, the one whose directions lie furthest from
