@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from tests.system.scenes import detail
-from tests.unit.densities import cloud, slab, sphere
+from tests.unit.densities import cloud, points, sampled, slab, sphere
 from tests.unit.test_marched import HEIGHTS, phase
+from voldetail.backend import mitsuba
 from voldetail.render import Components, components, traced_picture
 from voldetail.scene.density_grid import DensityGrid
 from voldetail.scene.lamp import Lamp
+from voldetail.scene.lookup import with_gradient
 from voldetail.scene.marched import MarchedVolume
 from voldetail.scene.medium import Medium
 from voldetail.scene.proxy import make_proxy
@@ -28,6 +30,17 @@ def marched(grid: DensityGrid, medium: Medium, lamp: Lamp = OBLIQUE, view: View 
     volume = MarchedVolume(view)
     volume.fill(grid, medium)
     return components(volume, lamp)
+
+
+def test_both_look_up_the_same_density_between_cells_and_at_the_faces() -> None:
+    mi, rng = mitsuba(), np.random.default_rng(8)
+    values = rng.random((5, 9, 13))
+    grid = sampled(lambda x, y, z: values, values.shape, (-0.3, 0.2, -0.9), 0.11)
+    places = points(np.array(grid.lower) + rng.random((400, 3)) * (np.array(grid.upper) - grid.lower))
+    where = mi.Interaction3f()
+    where.p = places
+    theirs = mi.load_dict(box_of(grid, Medium(1.0), [1.0] * 3)["interior"]["sigma_t"]).eval(where)
+    assert np.allclose(np.asarray(theirs)[0], np.asarray(with_gradient(grid).at(places).w), atol=1e-5)
 
 
 @pytest.mark.parametrize("name", ["even", "ramp"])
