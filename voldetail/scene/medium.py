@@ -27,7 +27,9 @@ class Medium:
 
     extinction: share of light lost a scene unit at density 1, above 0. asymmetry: None for a surface's shading on the
     density's gradient (GD10 section 6: Ka, Kd, Ks); a number g from -0.95 to 0.95 for a medium that scatters with
-    Henyey and Greenstein's phase function, mean cosine g, in which Ka and Kd both stand for the albedo.
+    Henyey and Greenstein's phase function, mean cosine g, in which Ka and Kd both stand for the albedo. The marcher sees light
+    that scattered once: a thick white cloud is several times as bright (`traced_medium.SCATTERINGS`), of much the same
+    pattern.
     """
 
     extinction: float

@@ -21,8 +21,9 @@ from voldetail.scene.view import View
 ALBEDO = 0.99
 """Single-scattering albedo unless given: 1 for a cloud of water, less so that long paths end."""
 
-SCATTERINGS = 64
-"""Times that light may scatter. Cut at 8, a cloud of optical thickness 10 loses a fifth of its brightness."""
+SCATTERINGS = 128
+"""Times that light may scatter. Of what a white slab of optical thickness 10 reflects straight back (g = 0), all is there
+at 128, 94 % at 64, 54 % at 8 and 15 % at 1, which is what the marcher sees; for g = 0.8 100, 98, 20 and 2 %."""
 
 OPAQUE = 16.0
 """Largest optical thickness of a cell that is sampled. Collisions are drawn against the densest cell of the whole box
