@@ -5,8 +5,8 @@
 The box is cut into the grid's own slices across the axis that the light follows most. Columns start on a lattice of the
 furthest face and run to the light: parallel for a distant light, converging for a near one. Along each, the depth grows
 slice by slice (midpoint rule: error proportional to the square of the cells' edge). It is N^3 look-ups for N^3 cells,
-whatever is seen of them; a walk from every shaded place costs N for each. At equal error, 0.2 % of the
-diffuse part of a solid and 0.4 % of a cloud, walks take a frame 1.8 and 3 times as long (64 cubed, 192 x 192 pixels:
+whatever is seen of them; a walk from every shaded place costs N for each. At equal error, 0.2 % of the diffuse
+part of a solid and 0.4 % of a cloud, walks take a frame 1.8 and 3 times as long (64 cubed, 192 x 192 pixels:
 tests/benchmarks/marching.py --shadows).
 """
 
