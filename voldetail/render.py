@@ -1,4 +1,4 @@
-"""Pictures of a surface: the only caller of Mitsuba's renderer and tracer.
+"""Pictures of a surface or a volume: the only caller of Mitsuba's renderer and tracer.
 
 Under one light and a uniform sky the picture is linear in the three coefficients (GD10 section 7; DESIGN section 4):
 
@@ -13,6 +13,7 @@ a fixed grid in each pixel: no grain, so the metric never sees any.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import drjit as dr
 import numpy as np
@@ -22,8 +23,10 @@ from voldetail.backend import mitsuba
 from voldetail.detail import Reflectance
 from voldetail.scene.heightfield import HeightField
 from voldetail.scene.lamp import Lamp
+from voldetail.scene.marched import MarchedVolume
 from voldetail.scene.surface import MeshSurface
 from voldetail.scene.traced import path_integrator, sensor_of
+from voldetail.scene.traced_medium import TracedVolume
 
 SHININESS = (16.0, 64.0)
 """Exponents whose lobes are rendered for the reflectance solve; a factor of 4 apart, about 2 in the lobe's width. A
@@ -59,9 +62,28 @@ class Components:
 
 
 def components(
-    surface: HeightField | MeshSurface, lamp: Lamp, *, subsamples: int = 2, shininess: tuple[float, ...] = SHININESS
+    surface: HeightField | MeshSurface | MarchedVolume, lamp: Lamp, *, subsamples: int = 2,
+    shininess: tuple[float, ...] = SHININESS,
 ) -> Components:
-    """Return the unit components of the surface as it was last updated, ``subsamples`` squared samples a pixel."""
+    """Return the unit components of the surface as it was last updated, ``subsamples`` squared samples a pixel.
+
+    Of a volume: what is covered is 1 - its transmittance; a medium that scatters has lobes of 0.
+    """
+    if isinstance(surface, MarchedVolume):
+        pictures = surface.march(lamp, subsamples, shininess)
+    else:
+        pictures = _reflected(surface, lamp, subsamples, shininess)
+    dr.eval(pictures)
+    shape = (surface.view.rows, surface.view.columns)
+    pooled = [_pool(np.asarray(p), shape, subsamples) for p in pictures]
+    lobes_pooled = np.stack(pooled[3:]) if shininess else np.zeros((0, *shape), dtype=np.float32)
+    return Components(pooled[1], pooled[2], lobes_pooled, shininess, pooled[0])
+
+
+def _reflected(
+    surface: HeightField | MeshSurface, lamp: Lamp, subsamples: int, shininess: tuple[float, ...]
+) -> list[Any]:
+    """Return (covered, ambient, diffuse, a lobe for each of ``shininess``) of a surface's samples, row by row."""
     mi = mitsuba()
     points, normals, sky, seen, albedo = surface.look(subsamples)
     direction, distance, irradiance = lamp.at(points)
@@ -77,12 +99,7 @@ def components(
         lobes.append(0.5 * (n + 2.0) * lobe * received)
     covered = dr.select(seen, 1.0, dr.zeros(mi.Float, dr.width(points)))
     ambient = dr.select(seen, sky * albedo, 0.0)
-    pictures = [covered, ambient, received * albedo, *lobes]
-    dr.eval(pictures)
-    shape = (surface.view.rows, surface.view.columns)
-    pooled = [_pool(np.asarray(p), shape, subsamples) for p in pictures]
-    lobes_pooled = np.stack(pooled[3:]) if lobes else np.zeros((0, *shape), dtype=np.float32)
-    return Components(pooled[1], pooled[2], lobes_pooled, shininess, pooled[0])
+    return [covered, ambient, received * albedo, *lobes]
 
 
 def _pool(samples: NDArray[np.float32], shape: tuple[int, int], subsamples: int) -> NDArray[np.float32]:
@@ -94,12 +111,13 @@ def _pool(samples: NDArray[np.float32], shape: tuple[int, int], subsamples: int)
     return np.asarray(total * np.float32(1.0 / subsamples**2), dtype=np.float32)
 
 
-def traced_picture(surface: MeshSurface, samples: int, background: float, seed: int = 0) -> NDArray[np.float32]:
-    """Return the path-traced picture (H, W, 3) of a surface whose scene holds its lights.
+def traced_picture(surface: MeshSurface | TracedVolume, samples: int, background: float, seed: int = 0) -> NDArray[np.float32]:
+    """Return the path-traced picture (H, W, 3) of a surface or volume whose scene holds its lights.
 
-    Where there is no surface it is ``background``: the environment lights the object and is not itself shown.
+    What shows behind it is ``background``: the environment lights the object and is not itself shown.
     """
-    sensor, integrator = sensor_of(surface.view), path_integrator()
+    sensor = sensor_of(surface.view)
+    integrator = surface.integrator if isinstance(surface, TracedVolume) else path_integrator()
     picture = np.asarray(
         mitsuba().render(surface.scene, sensor=sensor, integrator=integrator, spp=samples, seed=seed)
     )

@@ -43,6 +43,7 @@ TRACERS = {"render.py", "scene/surface.py"}
 PLUGINS = {
     "scene", "path", "direct", "constant", "envmap", "directional", "point", "principled", "diffuse", "bitmap",
     "hdrfilm", "orthographic", "perspective", "rgb", "box", "mesh_attribute", "voldetail_phong",
+    "heterogeneous", "gridvolume", "constvolume", "volpath", "hg", "cube", "null",
 }  # fmt: skip
 WITHOUT_ARRAYS = {"metric", "detail", "image", "report", "cli", "fit", "apply"}
 """Parts that see NumPy arrays only. (noise uses Dr.Jit's functions on the arrays that it is given.)"""

@@ -11,6 +11,7 @@ import numpy as np
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
 from voldetail.scene.proxy import Proxy
+from voldetail.scene.rays import rays_of
 from voldetail.scene.relief import relief_and_albedo
 from voldetail.scene.view import View
 
@@ -77,12 +78,7 @@ class MeshSurface:
 
     def rays(self, subsamples: int) -> Any:
         """Return the camera rays of a regular grid of samples, row by row."""
-        mi = mitsuba()
-        x, y = (mi.Float(v) for v in self.view.coordinates(subsamples))
-        if not self.view.perspective:
-            return mi.Ray3f(mi.Point3f(x, y, self.view.distance), mi.Vector3f(0.0, 0.0, -1.0))
-        eye = mi.Point3f(0.0, 0.0, self.view.distance)
-        return mi.Ray3f(eye, dr.normalize(mi.Point3f(x, y, 0.0) - eye))
+        return rays_of(self.view, subsamples)
 
     def look(self, subsamples: int) -> tuple[Any, Any, Any, Any, Any]:
         """Return (points, unit normals towards the viewer, sky visibility, seen at all, albedo factor), row by row."""
