@@ -1,8 +1,8 @@
 """Each photograph before and after: GD10 as published, and what is the default now.
 
 Run with:  python -m tests.benchmarks.before_after -o results/fits [--only NAME ...]
-Before: the paper's noise, metric and search (`--solver paper --metric published`), with at most as many evaluations as the default
-has. After: the details that tests.benchmarks.photographs left in the same folder. Same zone, light and seed. Both are
+Before: the paper's noise, metric and search (`--solver paper --metric published`), with at most as many evaluations as the
+default has. After: the details that tests.benchmarks.photographs left in the same folder. Same zone, light and seed. Both are
 compared with the photo under both metrics; "patches", which took part in neither fit, is a third judge.
 """
 
