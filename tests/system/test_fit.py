@@ -287,9 +287,12 @@ def test_the_true_amplitude_is_inside_its_interval_and_others_are_not() -> None:
     assert heights.low > 0.03
     assert heights.high < 0.12
     assert objective.evaluations == 0  # no part of the search
-    # Twice as high is found to be twice too high.
+    # Twice as high is found to be twice too high: nearest at half of it, and nothing above it is near.
     double = TRUTH.model_copy(update={"relief": ReliefParameters(amplitude=0.12)})
-    assert amplitude_interval(objective, double, seeds).high < 0.1
+    too_high = amplitude_interval(objective, double, seeds)
+    assert too_high.amplitudes[int(np.argmin(too_high.distances))] == pytest.approx(0.06)
+    assert too_high.low < 0.06
+    assert too_high.high == pytest.approx(0.12)  # the fitted one always belongs to it
 
 
 def test_a_given_amplitude_has_no_interval(found: FitResult) -> None:
