@@ -34,7 +34,8 @@ class AmplitudeInterval:
     """Amplitudes in scene units whose pictures are nearly as near to the photo as the best one's.
 
     low, high: under the light given. low_any, high_any: also under one up to 10 degrees lower or higher (the same
-    where a light has no elevation). Both hold the fitted amplitude. An end at that of ``amplitudes`` is open: nothing beyond was looked at.
+    where a light has no elevation). Both hold the fitted amplitude. An end at that of ``amplitudes`` is open: nothing
+    beyond was looked at.
     amplitudes, distances, distances_any: what was looked at, with the mean distance over seeds.
     """
 
