@@ -172,7 +172,9 @@ def test_a_stopped_fit_goes_on_where_it_was(tmp_path: Path) -> None:
         on_progress=lambda progress: seen.append(progress.evaluations),
     )  # fmt: skip
     assert min(seen) > state.evaluations  # counts on
-    assert 400 <= resumed.evaluations <= 400 + FINISH
+    assert state.evaluations < resumed.evaluations <= 400 + FINISH
+    # What is left of a budget when no generation fits into it any more is not used: then the plan ends before it.
+    assert resumed.evaluations >= 400 or resumed.status == "the plan was carried out"
     assert resumed.seconds > state.seconds
     assert [s.stage for s in later] == sorted(s.stage for s in later)
     assert later[0].stage >= state.stage
