@@ -12,6 +12,7 @@ from voldetail.metric import describe, distance
 from voldetail.render import components
 from voldetail.scene.heightfield import HeightField
 from voldetail.scene.lamp import Lamp
+from voldetail.scene.lights_text import direction_of
 from voldetail.scene.view import View
 
 SUBSAMPLES = (1, 2, 3, 4)
@@ -30,8 +31,7 @@ def grain_check(photos: dict[str, pictures.Picture]) -> dict[str, Any]:
     """
     mitsuba()
     surface = HeightField(View(-1.0, 1.0, -1.0, 1.0, pictures.SIDE, pictures.SIDE))
-    flat = float(np.cos(ELEVATION))
-    lamp = Lamp(direction=(flat * float(np.cos(AZIMUTH)), flat * float(np.sin(AZIMUTH)), float(np.sin(ELEVATION))))
+    lamp = Lamp(direction=direction_of(AZIMUTH, ELEVATION))
     found: dict[str, Any] = {}
     for name, truth in TRUTHS.items():
         surface.update(with_values(Detail(seed=1), truth))

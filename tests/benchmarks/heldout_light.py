@@ -19,7 +19,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -101,9 +101,9 @@ def _file(folder: str, name: str, encoding: Any = "auto") -> Callable[[], Photo]
     return lambda: load_photo(MULTILIGHT / folder / name, encoding=encoding)
 
 
-def _near(x: float, y: float, z: float, unit: float) -> Light:
+def _near(position: Sequence[float], unit: float) -> Light:
     """A light at a position in other units, of which ``unit`` go into the photo's longest side, 2 scene units."""
-    return parse_light(f"point:{x * 2 / unit:.6g},{y * 2 / unit:.6g},{z * 2 / unit:.6g}")
+    return parse_light("point:" + ",".join(f"{v * 2 / unit:.6g}" for v in position))
 
 
 def mosaic(folder: str) -> list[Shot]:
@@ -117,7 +117,7 @@ def mosaic(folder: str) -> list[Shot]:
 
     return [
         Shot(
-            f"{at['tile']} {at['nominal']}", _near(*at["xy_fit_tile_units"], FLASH_HEIGHT, 1.0),
+            f"{at['tile']} {at['nominal']}", _near((*at["xy_fit_tile_units"], FLASH_HEIGHT), 1.0),
             (lambda k: lambda: tile(k))(at["tile"]), at_camera=True,
         )
         for at in _lights(folder)["lights"]
@@ -128,7 +128,7 @@ def cards() -> list[Shot]:
     folder = "mgan_cards_blue"
     known = _lights(folder)
     return [
-        Shot(at["file"], _near(*at["pos_cm"], known["image_size_cm"]), _file(folder, at["file"]), at_camera=True)
+        Shot(at["file"], _near(at["pos_cm"], known["image_size_cm"]), _file(folder, at["file"]), at_camera=True)
         for at in known["lights"]
     ]
 
@@ -201,7 +201,8 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
     raise_by_brightness(bumps, target.luminance / shading * float(shading.mean()), steepness)
     bumps_reflectance = reflectance_under(bumps, target, specular=setup.fit.specular)
 
-    lights, rows = [], []
+    lights: list[dict[str, Any]] = []
+    rows: list[list[Picture]] = []
     for shot in shots:
         seen = make_target(setup_of(shot.light, target.zone), shot.load())
         lamp = Lamp(seen.lamp.direction, seen.lamp.position, seen.lamp.strength, shot.at_camera)

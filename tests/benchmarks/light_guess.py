@@ -151,8 +151,8 @@ def table(groups: dict[str, list[Case]]) -> str:
     for name, cases in groups.items():
         found = summary(cases)
         lines.append(f"| {name} | " + " | ".join("" if found[h] is None else str(found[h]) for h in heads) + " |")
-    heads = ("set", "light", "azimuth, elevation", "guessed", "azimuth error", "angle", "confidence", "of the end")
-    lines += ["", "| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
+    columns = ("set", "light", "azimuth, elevation", "guessed", "azimuth error", "angle", "confidence", "of the end")
+    lines += ["", "| " + " | ".join(columns) + " |", "|---" * len(columns) + "|"]
     for c in (c for name, cases in groups.items() if not name.startswith("all ") for c in cases):
         true = "" if c.azimuth is None else f"{c.azimuth:g}, " + ("?" if c.elevation is None else f"{c.elevation:g}")
         off = c.azimuth_error if c.azimuth_error is not None else f"{c.axis_error} (axis)" if c.axis_error is not None else ""

@@ -18,19 +18,17 @@ from scipy.special import expit, logsumexp
 
 from tests.benchmarks import texture_pictures as pictures
 from tests.benchmarks.metric_table import RESULTS, retrieval
-from tests.benchmarks.rivals import contours, slopes
+from tests.benchmarks.rivals import contours
 from tests.benchmarks.searched_decoys import searched
 from voldetail.files import write_text
-from voldetail.metric.floors import SMALLEST_FLOOR, noise_floors
+from voldetail.metric.floors import noise_floors
 from voldetail.metric.ingredients import COMBINED, INGREDIENTS
 from voldetail.metric.layers import Layers, layers
 
 Array = NDArray[np.float64]
 Part = tuple[str, str]
 
-MEASURED = {n: m for n, m in INGREDIENTS.items() if n not in ("published", "gabor", "tone")} | {
-    "contours": contours, "slopes": slopes,
-}  # fmt: skip
+MEASURED = {n: m for n, m in INGREDIENTS.items() if n not in ("published", "gabor", "tone")} | {"contours": contours}
 """What may be weighed: all but the published metric, which has to stay apart, and what sees hardly more than tone."""
 
 FOLDS = 6
@@ -86,7 +84,7 @@ def collect(photos: dict[str, pictures.Picture]) -> tuple[list[Part], list[str],
 
         floors = noise_floors(first, None, seen, lambda a, b, apart=apart: apart(_measured(a), _measured(b)))  # type: ignore[misc]
         parts = list(floors)
-        unit = np.array([max(floors[part], SMALLEST_FLOOR) for part in parts])
+        unit = np.array([floors[part] for part in parts])
 
         def row(other: Any, own: Any = own, unit: Array = unit, apart: Any = apart) -> Array:
             return np.array(list(apart(own, other).values())) / unit

@@ -24,13 +24,14 @@ from voldetail.detail import Detail, rounded, with_values
 from voldetail.detail.parameters import CURVE_POINTS
 from voldetail.files import write_text
 from voldetail.fit.reflectance import solve
-from voldetail.fit.search import CMAES, Vector, minimise
+from voldetail.fit.search import CMAES, Memory, Vector, minimise
 from voldetail.fit.session import derived_seed
 from voldetail.image import to_srgb
 from voldetail.metric import describe, distance
 from voldetail.render import components
 from voldetail.scene.heightfield import HeightField
 from voldetail.scene.lamp import Lamp
+from voldetail.scene.lights_text import direction_of
 from voldetail.scene.view import View
 
 RESULTS = Path(__file__).resolve().parents[2] / "results" / "metric"
@@ -77,8 +78,7 @@ def detail_at(vector: Vector, kind: tuple[int, int, str], seed: int) -> tuple[De
         "noise.octaves": int(values["noise.octaves"]), "noise.first_neighbour": first, "noise.last_neighbour": last,
         "noise.envelope": envelope, "noise.curve": curve, "relief.amplitude": min(roughness / values["noise.scale"], 1.0),
     }  # fmt: skip
-    flat = math.cos(elevation)
-    direction = (flat * math.cos(azimuth), flat * math.sin(azimuth), math.sin(elevation))
+    direction = direction_of(math.degrees(azimuth), math.degrees(elevation))
     return rounded(with_values(Detail(seed=seed), given)), Lamp(direction=direction)
 
 
@@ -122,7 +122,7 @@ def forge(name: str, photo: pictures.Picture) -> tuple[NDArray[np.float32], dict
     for kind, start in list(chosen.items())[:STARTS]:
         found = minimise(
             CMAES(POPULATION, periodic), lambda vectors, step: [value(v, kind) for v in vectors], start,
-            spread=0.2, seed=seed, budget=EVALUATIONS,
+            memory=Memory(0.2), seed=seed, budget=EVALUATIONS,
         )  # fmt: skip
         solutions.append((found.value, kind, found.vector))
     best, kind, vector = min(solutions, key=lambda s: s[0])

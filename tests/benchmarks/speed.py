@@ -11,6 +11,7 @@ import json
 import resource
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,7 @@ from voldetail.metric import describe, distance
 from voldetail.render import components
 from voldetail.scene.build import build
 from voldetail.scene.setup_file import setup_from
+from voldetail.scene.surface import MeshSurface
 
 import drjit as dr  # isort: skip
 
@@ -101,12 +103,12 @@ def growth() -> dict[str, Any]:
         target = make_target(setup)
         objective = Objective(target, build(setup, target.shape, target.zone), specular=True)
         detail = _plain(2)
-        rows["pixels"][resolution**2] = milliseconds(lambda o=objective, d=detail: o.evaluate(d, 3))
+        rows["pixels"][resolution**2] = milliseconds(partial(objective.evaluate, detail, 3))
     setup = setup_for()
     target = make_target(setup)
     objective = Objective(target, build(setup, target.shape, target.zone), specular=True)
     for octaves in (1, 2, 4, 8):
-        rows["octaves"][octaves] = milliseconds(lambda n=octaves: objective.evaluate(_plain(n), 3))
+        rows["octaves"][octaves] = milliseconds(partial(objective.evaluate, _plain(octaves), 3))
     for resolution in (68, 96, 136, 192):
         slow = build(setup_for(resolution), target.shape, target.zone, fast=False)
 
@@ -115,6 +117,7 @@ def growth() -> dict[str, Any]:
             components(surface, target.lamp)
 
         see()
+        assert isinstance(slow, MeshSurface)
         rows["vertices"][len(slow.proxy.positions)] = milliseconds(see, 3)
     return rows
 
@@ -153,7 +156,7 @@ def main() -> None:
     arguments = parser.parse_args()
     mitsuba()
     arguments.output.mkdir(parents=True, exist_ok=True)
-    record = {"at 192 x 192": evaluations(), "growth_ms": growth()}
+    record: dict[str, Any] = {"at 192 x 192": evaluations(), "growth_ms": growth()}
     print(json.dumps(record, indent=1), flush=True)
     record["solvers, metric published"] = solvers(arguments.evaluations)
     record["peak_memory_gb"] = round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20, 2)

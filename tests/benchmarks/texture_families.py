@@ -17,6 +17,7 @@ from voldetail.image import to_linear, to_srgb
 from voldetail.render import components
 from voldetail.scene.heightfield import HeightField
 from voldetail.scene.lamp import Lamp
+from voldetail.scene.lights_text import direction_of
 from voldetail.scene.view import View
 
 STEPS = np.linspace(0, 1, 7)
@@ -27,8 +28,8 @@ SEEDS = (11, 12, 13)
 PHOTOS = pictures.DECOY_PHOTOS[::2]
 """Every second of them, for time."""
 
-ELEVATION = np.radians(40)
-AZIMUTH = np.radians(135)
+AZIMUTH, ELEVATION = 135.0, 40.0
+"""Of the light, in degrees."""
 
 TRUTHS: dict[str, dict[str, Any]] = {
     "lumps": {"noise.first_neighbour": 1, "noise.last_neighbour": 2, "noise.envelope": "gaussian", "noise.scale": 9.0,
@@ -61,7 +62,7 @@ def rendered() -> Iterator[Family]:
                 path = []
                 for t in STEPS:
                     changed = with_values(other, _changed(detail, name, float(t)))
-                    path.append(_picture(surface, changed, AZIMUTH + (t * np.pi / 2 if name == "azimuth" else 0)))
+                    path.append(_picture(surface, changed, AZIMUTH + (90.0 * float(t) if name == "azimuth" else 0.0)))
                 yield Family(name, seen, path)
 
 
@@ -111,10 +112,8 @@ def _changed(detail: Detail, name: str, t: float) -> dict[str, Any]:
 
 
 def _picture(surface: HeightField, detail: Detail, azimuth: float) -> pictures.Picture:
-    flat = float(np.cos(ELEVATION))
-    lamp = Lamp(direction=(flat * float(np.cos(azimuth)), flat * float(np.sin(azimuth)), float(np.sin(ELEVATION))))
     surface.update(detail)
-    parts, matt = components(surface, lamp), detail.reflectance
+    parts, matt = components(surface, Lamp(direction=direction_of(azimuth, ELEVATION))), detail.reflectance
     return pictures.in_8_bits(parts.luminance(matt.ambient, matt.diffuse, 0.0, 0.0))
 
 

@@ -19,7 +19,9 @@ def sampled(
     z, y, x = np.meshgrid(*(np.arange(n) + 0.5 for n in shape), indexing="ij")
     places = (lower[axis] + v * edge for axis, v in enumerate((x, y, z)))
     values = np.broadcast_to(density(*places), shape).astype(np.float32).ravel()
-    return DensityGrid(mitsuba().Float(np.ascontiguousarray(values)), shape, lower, edge)
+    # Through a list into memory of Dr.Jit's own, as what is baked has: NumPy's is used where it lies, and a kernel for
+    # memory that happens not to be aligned is another one.
+    return DensityGrid(mitsuba().Float(values.tolist()), shape, lower, edge)
 
 
 def slab(density: Callable[[Array], Array], cells: int = 16) -> DensityGrid:

@@ -63,6 +63,11 @@ class NoiseParameters(Record):
     angle: float = declared("noise.angle")
     curve: tuple[Annotated[float, limits("noise.curve")], ...] = declared("noise.curve")
 
+    @property
+    def has_plates(self) -> bool:
+        """Whether cells have planes of their own: where all points count there are no cells."""
+        return self.last_neighbour != 50 and (self.cell_height > 0.0 or self.cell_tilt > 0.0)
+
     @model_validator(mode="after")
     def _neighbours(self) -> NoiseParameters:
         pair = (self.first_neighbour, self.last_neighbour)

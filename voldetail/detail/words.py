@@ -36,7 +36,7 @@ def summary(detail: Detail) -> str:
     else:
         counted = "1 octave" if octaves == 1 else f"{octaves} octaves"
         parts = [f"{counted} of {noise.domain} noise with cells about {1 / noise.scale:.2g} scene units across"]
-        if noise.last_neighbour != 50 and (noise.cell_height > 0 or noise.cell_tilt > 0):
+        if noise.has_plates:
             parts.append("broken into plates")
     stretch = max(noise.anisotropy, 1 / noise.anisotropy)
     if stretch >= _STRETCHED:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from voldetail.detail import Detail, bounds
 from voldetail.fit.objective import Objective
 from voldetail.scene.lamp import Lamp
+from voldetail.scene.lights_text import angles_of, direction_of
 
 FACTORS = tuple(2.0 ** (step / 2) for step in range(-4, 5))
 """Of the fitted amplitude, a quarter to four times: more than any photo leaves open that has a shadow in it."""
@@ -61,7 +62,7 @@ def amplitude_interval(objective: Objective, detail: Detail, seeds: Sequence[int
     factors = [f for f in FACTORS if f * detail.relief.amplitude <= highest] or [1.0]
     lamps = list(_lamps(objective.target.lamp))
     means = np.stack([_scores(_under(objective, lamp), detail, factors, seeds).mean(axis=1) for lamp in lamps])
-    given = means[[lamp is objective.target.lamp for lamp in lamps].index(True)]
+    given = means[lamps.index(objective.target.lamp)]
     amplitudes = np.array(factors) * detail.relief.amplitude
     low, high = _ends(amplitudes, given)
     ends_any = [_ends(amplitudes, row, float(given.min())) for row in means]
@@ -77,15 +78,10 @@ def _lamps(lamp: Lamp) -> Iterator[Lamp]:
     if lamp.direction is None:
         yield lamp
         return
-    x, y, z = lamp.direction
-    azimuth, elevation = math.atan2(y, x), math.degrees(math.atan2(z, math.hypot(x, y)))
+    azimuth, elevation = angles_of(lamp.direction)
     for step in ELEVATIONS:
-        if step == 0.0:
-            yield lamp
-            continue
-        turned = math.radians(min(max(elevation + step, 1.0), 90.0))
-        level = math.cos(turned)
-        yield replace(lamp, direction=(level * math.cos(azimuth), level * math.sin(azimuth), math.sin(turned)))
+        turned = min(max(elevation + step, 1.0), 90.0)
+        yield lamp if step == 0.0 else replace(lamp, direction=direction_of(azimuth, turned))
 
 
 def _under(objective: Objective, lamp: Lamp) -> Objective:

@@ -16,8 +16,6 @@ from voldetail.fit.objective import Evaluation, Objective
 from voldetail.fit.search import CMAES, Memory, Solution, Solver, minimise
 from voldetail.fit.space import Kind, Space, Vector
 
-PREVIEW_SECONDS = 2.0
-
 COARSE_COOLING = 0.6
 """Factor on the spread after each coarse round, at most. A few generations cannot shrink it by themselves, and families that
 were not searched closely are compared by luck: with the spread left to itself, gravel lost its stones to grooves."""

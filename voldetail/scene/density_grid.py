@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import drjit as dr
 import numpy as np
 from numpy.typing import NDArray
+
+from voldetail.backend import mitsuba
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,3 +35,22 @@ class DensityGrid:
     def array(self) -> NDArray[np.float32]:
         """The densities as (nz, ny, nx)."""
         return np.asarray(self.density, dtype=np.float32).reshape(self.shape)
+
+
+def split(index: Any, shape: tuple[int, int, int]) -> tuple[Any, Any, Any]:
+    """Return the column x, row y and slice z of the cells with the numbers ``index``, x fastest."""
+    _, ny, nx = (dr.opaque(type(index), count) for count in shape)
+    row = index // nx
+    layer = row // ny
+    return index - row * nx, row - layer * ny, layer
+
+
+def middles(index: Any, shape: tuple[int, int, int], lower: tuple[float, float, float], edge: float) -> tuple[Any, Any, Any]:
+    """Return the middles of the cells with the numbers ``index``, in scene units."""
+    float_type: Any = mitsuba().Float
+    side = dr.opaque(float_type, edge)
+    x, y, z = (
+        dr.fma(float_type(cell) + 0.5, side, dr.opaque(float_type, float(low)))
+        for cell, low in zip(split(index, shape), lower, strict=True)
+    )
+    return x, y, z

@@ -5,13 +5,14 @@ Within the box the outermost cells' values go on to its faces; outside, callers 
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from typing import Any
 
 import drjit as dr
-import numpy as np
 
 from voldetail.backend import mitsuba
-from voldetail.scene.density_grid import DensityGrid
+from voldetail.scene.density_grid import DensityGrid, split
 
 BLOCK = 4
 """Cells along the side of a block that is skipped where it is empty: smaller ones follow a shape more closely, but each
@@ -73,11 +74,33 @@ def with_gradient(grid: DensityGrid) -> Lookup:
 
 def cells_of(shape: tuple[int, int, int]) -> tuple[Any, Any, Any]:
     """Return the column x, row y and slice z of every cell, x fastest."""
+    return split(dr.arange(mitsuba().Int32, math.prod(shape)), shape)
+
+
+def folded(
+    values: Any, shape: tuple[int, int, int], size: int, offsets: range, combine: Callable[[Any, Any], Any]
+) -> tuple[Any, tuple[int, int, int]]:
+    """Return one value for each block of ``size`` cubed cells, and how many blocks there are: (nz, ny, nx).
+
+    Cells at ``offsets`` from the block's first one, along each axis, are combined; 0 stands for those beyond the grid.
+    """
     mi = mitsuba()
-    _, ny, nx = (dr.opaque(mi.Int32, n) for n in shape)
-    index = dr.arange(mi.Int32, int(np.prod(shape)))
-    row = index // nx
-    return index - row * nx, row % ny, row // ny
+    sides = list(shape)
+    for axis in (2, 1, 0):  # x first: each pass leaves less for the next
+        count, sides[axis] = sides[axis], -(-sides[axis] // size)
+        cell = list(cells_of((sides[0], sides[1], sides[2])))
+        first = cell[2 - axis] * size
+        source = list(sides)
+        source[axis] = count
+        _, ny, nx = (dr.opaque(mi.Int32, n) for n in source)
+        limit, total = dr.opaque(mi.Int32, count), dr.zeros(mi.Float, len(first))
+        for offset in offsets:
+            place = cell[2 - axis] = first + offset
+            index = mi.UInt32((cell[2] * ny + cell[1]) * nx + cell[0])
+            total = combine(total, dr.gather(mi.Float, values, index, (place >= 0) & (place < limit)))
+        dr.eval(total)
+        values = total
+    return values, (sides[0], sides[1], sides[2])
 
 
 class Emptiness:
@@ -85,22 +108,7 @@ class Emptiness:
 
     def __init__(self, grid: DensityGrid) -> None:
         mi = mitsuba()
-        values, shape = grid.density, list(grid.shape)
-        for axis in (2, 1, 0):  # x first: each pass leaves an eighth for the next
-            count, shape[axis] = shape[axis], -(-shape[axis] // BLOCK)
-            cell = list(cells_of((shape[0], shape[1], shape[2])))
-            first = cell[2 - axis] * BLOCK
-            source = list(shape)
-            source[axis] = count
-            _, ny, nx = (dr.opaque(mi.Int32, n) for n in source)
-            most = dr.zeros(mi.Float, len(first))
-            last = dr.opaque(mi.Int32, count - 1)
-            for offset in range(-1, BLOCK + 1):
-                cell[2 - axis] = dr.clip(first + offset, 0, last)
-                most = dr.maximum(most, dr.gather(mi.Float, values, mi.UInt32((cell[2] * ny + cell[1]) * nx + cell[0])))
-            dr.eval(most)
-            values = most
-        self.most = values
+        self.most, shape = folded(grid.density, grid.shape, BLOCK, range(-1, BLOCK + 1), dr.maximum)
         self.counts = mi.Vector3u(*(dr.opaque(mi.UInt32, n) for n in reversed(shape)))
         self.lower = mi.Point3f(*(dr.opaque(mi.Float, float(v)) for v in grid.lower))
         self.side = dr.opaque(mi.Float, BLOCK * grid.edge)

@@ -18,7 +18,7 @@ def settings_of(detail: Detail) -> NoiseSettings:
     dims = 3 if noise.domain == SOLID else 2
     return NoiseSettings.from_ranks(
         dims, noise.first_neighbour, noise.last_neighbour, noise.octaves, noise.envelope == "gaussian",
-        noise.weights, noise.joining == "highest", _has_plates(detail),
+        noise.weights, noise.joining == "highest", noise.has_plates,
     )
 
 
@@ -61,7 +61,7 @@ def _relief(detail: Detail, domain: tuple[Any, ...], scale: float) -> tuple[Any,
     shape = plates = None
     if noise.joining == "highest":
         shape = GrainShape(*_opaque(float_type, b=noise.facets, e=noise.elongation, s=noise.size_spread).values())
-    if _has_plates(detail):
+    if noise.has_plates:
         plates = PlateShape(*_opaque(float_type, o=noise.cell_height, t=noise.cell_tilt, w=noise.bevel).values())
     octaves = _opaque(
         float_type, lacunarity=noise.lacunarity, gain=noise.gain, stripe_frequency=noise.stripe_frequency,
@@ -71,12 +71,6 @@ def _relief(detail: Detail, domain: tuple[Any, ...], scale: float) -> tuple[Any,
         _points(detail, domain), settings_of(detail), _seed(detail, float_type), **_cells(detail, float_type, scale),
         **octaves, curve=float_type(list(noise.curve)), shape=shape, plates=plates,
     )
-
-
-def _has_plates(detail: Detail) -> bool:
-    """Return whether cells have planes of their own: where all points count there are no cells."""
-    noise = detail.noise
-    return noise.last_neighbour != 50 and (noise.cell_height != 0.0 or noise.cell_tilt != 0.0)
 
 
 def _points(detail: Detail, domain: tuple[Any, ...]) -> tuple[Any, ...]:

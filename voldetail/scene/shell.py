@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from voldetail.backend import mitsuba
 from voldetail.errors import InputError
 from voldetail.scene import signed_distance
-from voldetail.scene.density_grid import DensityGrid
+from voldetail.scene.density_grid import DensityGrid, middles
 from voldetail.scene.mesh_distance import mesh_distance
 from voldetail.scene.proxy import rotation_matrix
 from voldetail.scene.shell_plan import ShellPlan
@@ -87,16 +87,7 @@ class Shell:
 
     def middles(self, index: Any) -> Points:
         """Return the middles of the cubes with the numbers ``index`` (x fastest), in scene units."""
-        float_type: Any = mitsuba().Float
-        _, ny, nx = (dr.opaque(type(index), count) for count in self.plan.shape)
-        row = index // nx
-        layer = row // ny
-        edge = dr.opaque(float_type, self.plan.edge)
-        cells = index - row * nx, row - layer * ny, layer
-        return tuple(
-            dr.fma(float_type(cell) + 0.5, edge, dr.opaque(float_type, low))
-            for cell, low in zip(cells, self.plan.lower, strict=True)
-        )
+        return middles(index, self.plan.shape, self.plan.lower, self.plan.edge)
 
     def tiles(self) -> list[Any]:
         """Return the numbers of the cubes, TILE at a time, not yet evaluated."""

@@ -17,6 +17,9 @@ import drjit as dr
 import numpy as np
 from numpy.typing import NDArray
 
+from voldetail.backend import mitsuba
+from voldetail.scene.lookup import Lookup
+
 Distance = Callable[[tuple[Any, ...]], tuple[Any, tuple[Any, ...]]]
 """From a point (x, y, z) in the shape's own frame to (s, n)."""
 
@@ -79,27 +82,10 @@ def gridded(values: Any, shape: tuple[int, int, int], lower: tuple[float, float,
     Outside the middles the nearest value holds.
     """
 
+    lookup = Lookup(values, 1, shape, lower, edge)
+
     def at(p: tuple[Any, ...]) -> Any:
-        float_type: Any = type(p[0])
-        int_type = dr.int32_array_t(float_type)
-        inverse = dr.opaque(float_type, 1.0 / edge)
-        fractions, indices = [], []
-        for v, low, count in zip(p, lower, reversed(shape), strict=True):
-            g = dr.clip((v - dr.opaque(float_type, low)) * inverse - 0.5, 0.0, dr.opaque(float_type, count - 1.0))
-            cell = dr.clip(int_type(g), 0, dr.opaque(int_type, max(count - 2, 0)))
-            indices.append(cell)
-            fractions.append(g - float_type(cell))
-        row, layer = dr.opaque(int_type, shape[2]), dr.opaque(int_type, shape[2] * shape[1])
-        first = indices[0] + indices[1] * row + indices[2] * layer
-        planes = []
-        for dz in (0, 1):
-            rows = []
-            for dy in (0, 1):
-                start = first + dy * row + dz * layer
-                ends = [dr.gather(float_type, values, start + dx) for dx in (0, 1)]
-                rows.append(dr.lerp(ends[0], ends[1], fractions[0]))
-            planes.append(dr.lerp(rows[0], rows[1], fractions[1]))
-        return dr.lerp(planes[0], planes[1], fractions[2])
+        return lookup.at(mitsuba().Point3f(*p))
 
     def distance(p: tuple[Any, ...]) -> tuple[Any, tuple[Any, ...]]:
         step = dr.opaque(type(p[0]), edge)

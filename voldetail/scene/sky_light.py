@@ -14,16 +14,17 @@ Made on a coarse copy of the grid: what hides the sky is soft, and no random dir
 from __future__ import annotations
 
 import math
+import operator
 from typing import Any
 
 import drjit as dr
 import numpy as np
 
 from voldetail.backend import mitsuba
-from voldetail.scene.density_grid import DensityGrid
+from voldetail.scene.density_grid import DensityGrid, middles
 from voldetail.scene.lamp import Lamp
 from voldetail.scene.light_depth import LightDepth
-from voldetail.scene.lookup import Lookup, cells_of
+from voldetail.scene.lookup import Lookup, folded
 
 COARSE = 32
 """Cells along the longest side of the coarse copy: the twelve sweeps then take 24 to 32 ms, for a grid of 64 cubed as for
@@ -75,32 +76,15 @@ def coarsened(grid: DensityGrid, factor: int) -> DensityGrid:
     """Return the means over ``factor`` cubed cells; the last ones may reach beyond the box, where the density is 0."""
     if factor == 1:
         return grid
-    mi = mitsuba()
-    values, shape = grid.density, list(grid.shape)
-    for axis in (2, 1, 0):
-        count, shape[axis] = shape[axis], -(-shape[axis] // factor)
-        cell = list(cells_of((shape[0], shape[1], shape[2])))
-        first = cell[2 - axis] * factor
-        source = list(shape)
-        source[axis] = count
-        _, ny, nx = (dr.opaque(mi.Int32, n) for n in source)
-        total = dr.zeros(mi.Float, len(first))
-        limit = dr.opaque(mi.Int32, count)
-        for offset in range(factor):
-            cell[2 - axis] = first + offset
-            index = mi.UInt32((cell[2] * ny + cell[1]) * nx + cell[0])
-            total = total + dr.gather(mi.Float, values, index, cell[2 - axis] < limit)
-        values = total * (1.0 / factor)
-        dr.eval(values)
-    return DensityGrid(values, (shape[0], shape[1], shape[2]), grid.lower, grid.edge * factor)
+    total, shape = folded(grid.density, grid.shape, factor, range(factor), operator.add)
+    return DensityGrid(total * (1.0 / factor**3), shape, grid.lower, grid.edge * factor)
 
 
 def centres(grid: DensityGrid) -> Any:
     """Return the middles of the cells, x fastest."""
     mi = mitsuba()
-    edge = dr.opaque(mi.Float, grid.edge)
-    places = zip(cells_of(grid.shape), grid.lower, strict=True)
-    centre = mi.Point3f(*((mi.Float(cell) + 0.5) * edge + dr.opaque(mi.Float, float(low)) for cell, low in places))
+    index = dr.arange(mi.UInt32, dr.width(grid.density))
+    centre = mi.Point3f(*middles(index, grid.shape, grid.lower, grid.edge))
     dr.eval(centre)
     return centre
 

@@ -35,7 +35,7 @@ def basis(layers: Layers, /) -> Parts:
 
 def measure(layers: Layers, basis: Parts, /) -> Parts:
     """Means and upper halves of the Gram matrices of the features of each layer and level."""
-    found = {}
+    found: dict[str, Array] = {}
     for name, image in zip(LEVEL_NAMES, layers.images, strict=True):
         shown = 10 * band(image)  # about 1, so that means and products, of degree one and two, weigh alike
         first, second = _filters()

@@ -27,8 +27,9 @@ def pyramid(image: Real) -> tuple[Real, list[Complex], list[Real]]:
     """
     spectrum = fft.fft2(even(np.asarray(image, np.float32)))
     radius, _ = _polar(spectrum.shape)
-    high = fft.ifft2(spectrum * _high(radius / 2)).real
-    spectrum = spectrum * _low(radius / 2)
+    half = np.asarray(radius / 2, np.float32)
+    high = fft.ifft2(spectrum * _high(half)).real
+    spectrum = spectrum * _low(half)
     bands, lows = [], []
     for _ in range(LEVELS):
         lows.append(fft.ifft2(spectrum).real)
@@ -69,7 +70,7 @@ def _polar(shape: tuple[int, int]) -> tuple[Real, Real]:
 
 def _octave(radius: Real) -> Real:
     """0 from pi / 2 on, 1 up to pi / 4."""
-    return np.clip(-np.log2(np.maximum(radius, 1e-6) * 2 / np.pi), 0, 1)
+    return np.asarray(np.clip(-np.log2(np.maximum(radius, 1e-6) * 2 / np.pi), 0, 1), np.float32)
 
 
 def _low(radius: Real) -> Real:
