@@ -13,6 +13,7 @@ from voldetail.detail import (
     ALLOWED_NEIGHBOURS,
     PARAMETERS,
     Detail,
+    MediumParameters,
     NoiseFloor,
     Provenance,
     detail_from_text,
@@ -70,7 +71,14 @@ def details(draw: st.DrawFn) -> Detail:
             values[p.key] = draw(number)
     pair = draw(st.sampled_from([(1, 50)] if values["noise.joining"] == "highest" else ALLOWED_NEIGHBOURS))
     values["noise.first_neighbour"], values["noise.last_neighbour"] = pair
-    made = with_values(Detail(), values)
+    mode = draw(st.sampled_from(["displacement", "solid", "medium"]))
+    if mode != "displacement":
+        values["noise.domain"] = "solid"
+    if mode == "medium":
+        values |= {f"reflectance.{name}": 0.0 for name in ("specular", "height_albedo", "cell_albedo", "speckle")}
+    else:
+        values = {key: value for key, value in values.items() if not key.startswith("medium.")}
+    made = with_values(Detail(mode="displacement" if mode == "displacement" else "volume"), values)
     extra = {
         "seed": draw(st.integers(0, 2**32 - 1)),
         "name": draw(st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=20)),
@@ -95,7 +103,10 @@ def test_round_trip_is_stable_byte_for_byte(detail: Detail) -> None:
 
 
 def changed(key: str, value: Any) -> str:
-    data = json.loads(detail_to_text(Detail(provenance=PROVENANCE)))
+    # A medium only where one is changed: with it, other numbers are refused.
+    medium = MediumParameters() if key.startswith("medium") else None
+    mode = "displacement" if medium is None else "volume"
+    data = json.loads(detail_to_text(Detail(provenance=PROVENANCE, mode=mode, medium=medium)))
     *groups, last = key.split(".")
     table = data
     for group in groups:
@@ -109,7 +120,7 @@ JSON_VALUES = st.recursive(
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=4),
     max_leaves=12,
 )
-KEYS = [p.key for p in PARAMETERS] + ["version", "seed", "name", "noise", "provenance", "provenance.zone"]
+KEYS = [p.key for p in PARAMETERS] + ["version", "seed", "name", "mode", "noise", "medium", "provenance", "provenance.zone"]
 
 
 def accepted_or_refused(text: str) -> None:

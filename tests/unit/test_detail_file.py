@@ -229,3 +229,38 @@ def test_a_file_from_before_plates_is_one_without(key: str) -> None:
     text = json.loads(detail_to_text(detail))
     del text["noise"][key.split(".")[1]]
     assert detail_from_text(json.dumps(text)) == detail
+
+
+def test_a_file_without_mode_and_medium_is_a_displacement() -> None:
+    data = json.loads(detail_to_text(Detail()))
+    assert "medium" not in data
+    del data["mode"]
+    assert detail_from_text(json.dumps(data)) == Detail()
+
+
+def test_a_medium_comes_back_and_is_whole_or_refused() -> None:
+    cloud = with_values(Detail(seed=4), {"medium.extinction": 12.5, "medium.asymmetry": 0.8})
+    assert cloud.mode == "volume"
+    data = json.loads(detail_to_text(cloud))
+    assert detail_from_text(json.dumps(data)) == cloud
+    del data["medium"]["albedo"]
+    with pytest.raises(InputError, match=r"medium\.albedo is missing; allowed: 0 to 1"):
+        detail_from_text(json.dumps(data))
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"mode": "displacement"}, 'a medium needs the mode "volume"'),
+        ({"noise": {"domain": "surface"}}, 'set noise.domain to "solid"'),
+        ({"reflectance": {"speckle": 0.2}}, "set reflectance.speckle to 0"),
+        ({"reflectance": {"specular": 0.02}}, "set reflectance.specular to 0"),
+        ({"medium": {"extinction": 0.0}}, r"medium\.extinction = 0.0 is out of range"),
+    ],
+)
+def test_what_a_volume_cannot_be_is_refused_in_a_sentence(values: dict[str, Any], words: str) -> None:
+    data = json.loads(detail_to_text(with_values(Detail(), {"medium.extinction": 12.5})))
+    for key, value in values.items():
+        data[key] = data[key] | value if isinstance(value, dict) else value
+    with pytest.raises(InputError, match=words):
+        detail_from_text(json.dumps(data))

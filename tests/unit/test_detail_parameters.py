@@ -11,6 +11,7 @@ from voldetail.detail import (
     PARAMETERS,
     START_CURVES,
     Detail,
+    MediumParameters,
     NoiseParameters,
     Reflectance,
     ReliefParameters,
@@ -29,6 +30,7 @@ GROUPS: dict[str, type[BaseModel]] = {
     "noise": NoiseParameters,
     "relief": ReliefParameters,
     "reflectance": Reflectance,
+    "medium": MediumParameters,
 }
 
 
@@ -123,7 +125,9 @@ def test_start_curves() -> None:
 def test_words_cover_all_parameters_in_people_s_units() -> None:
     detail = with_values(Detail(), {"noise.angle": math.pi / 4, "noise.scale": 12.5})
     rows = {label: (value, unit, sentence) for label, value, unit, sentence in describe_in_words(detail)}
-    assert len(rows) == len(PARAMETERS)
+    assert len(rows) == len([p for p in PARAMETERS if not p.key.startswith("medium.")])
+    cloud = with_values(Detail(), {"medium.thickness": 0.25})
+    assert len(describe_in_words(cloud)) == len(PARAMETERS)
     assert rows["Angle"][:2] == ("45.0", "degrees")
     assert rows["Scale"] == ("12.5", "cells per scene unit", parameter("noise.scale").sentence)
 

@@ -13,7 +13,14 @@ from pydantic import ValidationError
 
 from voldetail.detail.parameters import PARAMETERS, parameter
 from voldetail.detail.reading import read_small_text
-from voldetail.detail.record import DETAIL_VERSION, Detail, NoiseParameters, Reflectance, ReliefParameters
+from voldetail.detail.record import (
+    DETAIL_VERSION,
+    Detail,
+    MediumParameters,
+    NoiseParameters,
+    Reflectance,
+    ReliefParameters,
+)
 from voldetail.detail.refusal import printable, refusal, shown
 from voldetail.errors import InputError
 from voldetail.files import write_text
@@ -21,6 +28,8 @@ from voldetail.files import write_text
 FORMAT = "voldetail.detail"
 SIGNIFICANT_DIGITS = 7  # a float32 has seven: the noise and the renderer work in float32
 _GROUPS = tuple(dict.fromkeys(p.key.split(".")[0] for p in PARAMETERS))
+_OPTIONAL = "medium"
+"""The group that a detail may be without."""
 
 Migration = Callable[[dict[str, Any]], dict[str, Any]]
 MIGRATIONS: dict[int, Migration] = {}
@@ -45,6 +54,8 @@ def save_detail(path: Path | str, detail: Detail) -> None:
 def detail_to_text(detail: Detail) -> str:
     """The text of the detail file; raises InputError if `provenance.settings` holds what JSON cannot."""
     data = {"format": FORMAT, **detail.model_dump(mode="json")}
+    if detail.medium is None:
+        del data["medium"]  # most details have none, and a reader is not to wonder about it
     try:
         text = json.dumps(_rounded(data), indent=2, ensure_ascii=False, allow_nan=False)
     except ValueError:
@@ -80,9 +91,11 @@ def detail_from_text(text: str, where: str = "The detail") -> Detail:
 def _refuse_missing(data: dict[str, Any], where: str) -> None:
     """Refuse a file that leaves a parameter out, unless it is a later one: the record's defaults are for Python callers."""
     for group in _GROUPS:
+        if group == _OPTIONAL and data.get(group) is None:
+            continue
         names = [p.key.split(".")[1] for p in PARAMETERS if p.key.startswith(group + ".")]
         if group not in data:
-            raise InputError(f"{where}: {group} is missing; a detail file has {', '.join(_GROUPS)}.")
+            raise InputError(f"{where}: {group} is missing; a detail file has {', '.join(g for g in _GROUPS if g != _OPTIONAL)}.")
         given = data[group]
         if not isinstance(given, dict) or set(given) - set(names):
             continue  # of the wrong kind, or with a misspelt key: the record's own refusal tells more
@@ -97,9 +110,12 @@ def schema() -> dict[str, Any]:
     made = Detail.model_json_schema(mode="serialization")
     form = {"const": FORMAT, "type": "string", "description": "Tells that this is a detail file."}
     made["properties"] = {"format": form, **made["properties"]}
-    made["required"] = ["format", "version", *_GROUPS]
+    made["required"] = ["format", "version", *(g for g in _GROUPS if g != _OPTIONAL)]
     later = {p.key for p in PARAMETERS if p.later}
-    for group, record in (("noise", NoiseParameters), ("relief", ReliefParameters), ("reflectance", Reflectance)):
+    groups = (
+        ("noise", NoiseParameters), ("relief", ReliefParameters), ("reflectance", Reflectance), ("medium", MediumParameters),
+    )
+    for group, record in groups:
         # Defaults are for Python, not for files.
         names = [name for name in record.model_fields if f"{group}.{name}" not in later]
         made["$defs"][record.__name__]["required"] = names

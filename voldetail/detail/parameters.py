@@ -1,6 +1,7 @@
 """Every parameter of a detail, declared once: bounds, defaults, help and file schema all come from here.
 
-Symbols are those of Gilet & Dischler 2010 (GD10), equations 2 and 3 and sections 6 and 7.
+Symbols are those of Gilet & Dischler 2010 (GD10), equations 2 and 3 and sections 6 and 7; a medium's sigma_t, g and omega are
+those of radiative transfer.
 """
 
 from __future__ import annotations
@@ -123,6 +124,16 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter("reflectance.tint", "Tint", "c", "", 0, 14, (1.0, 1.0, 1.0), "linear",
               "Linear red, green and blue that multiply ambient and diffuse; their Rec. 709 luminance is 1.",
               count=3),
+    Parameter("medium.thickness", "Shell thickness", "T", "scene units", 0.005, 4, 0.3, "log",
+              "How far below and above its shape a medium goes from full density to none: larger is softer."),
+    Parameter("medium.exponent", "Transfer exponent", "d_h", "", 0.1, 12, 1.0, "log",
+              "The power to which density is raised: above 1 thinner and more ragged, below 1 fuller."),
+    Parameter("medium.extinction", "Extinction", "sigma_t", "per scene unit", 0.05, 2000, 20.0, "log",
+              "How much light full density stops: of a beam, all but a 1/e-th part in 1/extinction scene units."),
+    Parameter("medium.asymmetry", "Asymmetry", "g", "", -0.9, 0.95, 0.0, "linear",
+              "The mean cosine of scattering: 0 is even, towards 1 light goes on forwards as in clouds."),
+    Parameter("medium.albedo", "Single-scattering albedo", "omega", "", 0, 1, 0.99, "linear",
+              "The share of the stopped light that is scattered and not swallowed: near 1 for clouds, low for soot."),
 )
 # fmt: on
 

@@ -112,6 +112,16 @@ class Reflectance(Record):
         return tint
 
 
+class MediumParameters(Record):
+    """A density that light passes through: GD10 section 6 (shell and th = d^d_h), and what it does to light."""
+
+    thickness: float = declared("medium.thickness")
+    exponent: float = declared("medium.exponent")
+    extinction: float = declared("medium.extinction")
+    asymmetry: float = declared("medium.asymmetry")
+    albedo: float = declared("medium.albedo")
+
+
 class Provenance(Record):
     """Where a detail came from: inputs, versions, settings and what the fit reached."""
 
@@ -162,9 +172,17 @@ class NoiseFloor(Record):
 
 
 class Detail(Record):
-    """A procedural detail: noise, relief and reflectance, with where they came from."""
+    """A procedural detail: noise, relief and reflectance, with where they came from.
+
+    The relief displaces a surface, or, with ``mode`` "volume", shifts the points of space through an object's density
+    (GD10 section 6): the surface of that density is seen, or, where there is a ``medium``, the density itself.
+    """
 
     version: Literal[1] = Field(default=DETAIL_VERSION, description="The version of the file format.")
+    mode: Literal["displacement", "volume"] = Field(
+        default="displacement",
+        description="Whether the relief displaces a surface, or shifts the points of space through an object's density.",
+    )
     name: str = Field(default="detail", min_length=1, max_length=200, description="A name for people.")
     seed: int = Field(default=0, ge=0, le=LARGEST_SEED, description="The seed of the feature points.")
     noise: NoiseParameters = Field(default_factory=NoiseParameters, description="The noise.")
@@ -172,29 +190,55 @@ class Detail(Record):
     reflectance: Reflectance = Field(
         default_factory=Reflectance, description="How the surface reflects light."
     )
+    medium: MediumParameters | None = Field(
+        default=None, description="Of a volume that light passes through; without it a volume is solid."
+    )
     provenance: Provenance | None = Field(default=None, description="Where the detail came from.")
     noise_floor: NoiseFloor = Field(
         default_factory=NoiseFloor, description="Distances that chance alone gives."
     )
 
+    @model_validator(mode="after")
+    def _volume(self) -> Detail:
+        if self.mode == "displacement":
+            if self.medium is not None:
+                raise ValueError('a medium needs the mode "volume"; set it, or leave the medium out')
+            return self
+        if self.noise.domain != "solid":
+            raise ValueError('the mode "volume" needs noise that fills space: set noise.domain to "solid"')
+        if self.medium is not None:
+            own = ("specular", "height_albedo", "cell_albedo", "speckle")
+            used = [name for name in own if getattr(self.reflectance, name) != 0.0]
+            if used:
+                raise ValueError(f"a medium has no highlight and no pattern of albedo: set reflectance.{used[0]} to 0")
+        return self
+
 
 def values_of(detail: Detail) -> dict[str, Any]:
-    """The detail's parameters by key ("noise.scale" and so on), in the order of their declaration."""
+    """The detail's parameters by key ("noise.scale" and so on), in the order of their declaration.
+
+    Those of a medium are there where the detail has one.
+    """
     found: dict[str, Any] = {}
     for declaration in PARAMETERS:
         group, name = declaration.key.split(".")
-        found[declaration.key] = getattr(getattr(detail, group), name)
+        record = getattr(detail, group)
+        if record is not None:
+            found[declaration.key] = getattr(record, name)
     return found
 
 
 def with_values(detail: Detail, values: Mapping[str, Any]) -> Detail:
     """A copy of `detail` with the parameters in `values` (by key) replaced and everything checked again.
 
+    A number of the medium makes the detail one, whose other numbers are the defaults.
     Raises InputError for an unknown key or a value that is not allowed.
     """
     data = detail.model_dump()
     for key, value in values.items():
         group, name = parameter(key).key.split(".")
+        if data[group] is None:
+            data["mode"], data[group] = "volume", {}
         data[group][name] = value
     return detail_from(data)
 

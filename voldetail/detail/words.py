@@ -21,7 +21,7 @@ def describe_in_words(detail: Detail) -> list[tuple[str, str, str, str]]:
     Angles, radians in the file, are given in degrees.
     """
     values = values_of(detail)
-    return [(p.label, *_value(p, values[p.key]), p.sentence) for p in PARAMETERS]
+    return [(p.label, *_value(p, values[p.key]), p.sentence) for p in PARAMETERS if p.key in values]
 
 
 def summary(detail: Detail) -> str:
@@ -45,7 +45,11 @@ def summary(detail: Detail) -> str:
         parts.append(f"stretched {stretch:.2g} times along {math.degrees(along) % 180:.0f} degrees")
     if noise.stripe_frequency > 0:
         parts.append(f"striped {noise.stripe_frequency:.2g} times a cell")
-    parts.append(f"raised by up to {detail.relief.amplitude:.2g} scene units")
+    raised = {"displacement": "raised", "volume": "shifting solid matter" if detail.medium is None else "shifting a medium"}
+    parts.append(f"{raised[detail.mode]} by up to {detail.relief.amplitude:.2g} scene units")
+    if detail.medium is not None:
+        parts.append(f"which is {detail.medium.thickness:.2g} thick to its edge, with an extinction of {detail.medium.extinction:.2g}")
+        return ", ".join(parts) + "."
     glossy = detail.reflectance.specular > _GLOSSY
     parts.append(f"glossy (shininess {detail.reflectance.shininess:.2g})" if glossy else "matte")
     return ", ".join(parts) + "."

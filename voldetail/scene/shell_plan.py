@@ -72,13 +72,14 @@ class ShellPlan:
 
 
 def plan_shell(
-    proxy: ProxySetup, edge: float, thickness: float, amplitude: float = 0.0, budget: int = DEFAULT_BUDGET
+    proxy: ProxySetup, edge: float, thickness: float, amplitude: float = 0.0, budget: int = DEFAULT_BUDGET, *,
+    solid: bool = True,
 ) -> ShellPlan:
     """Return the grid of cubes of ``edge`` about ``proxy`` with a shell of ``thickness`` and room to shift by ``amplitude``.
 
     A good ``edge`` is a pixel of the picture; a good ``thickness`` for solid matter three edges. Raises InputError for a
-    length that is not over 0, a shell thinner than LEAST_CELLS edges or thicker than the object, an open mesh, and a grid
-    that takes more than ``budget`` bytes.
+    length that is not over 0, a shell thinner than LEAST_CELLS edges or, if the object shall be ``solid`` inside, thicker
+    than it, an open mesh, and a grid that takes more than ``budget`` bytes.
     """
     for name, value in (("cell's edge", edge), ("shell's thickness", thickness)):
         if not (math.isfinite(value) and value > 0):
@@ -91,7 +92,8 @@ def plan_shell(
             f" them; use a thickness of at least {LEAST_CELLS * edge:.3g} or an edge of at most {thickness / LEAST_CELLS:.3g}."
         )
     mesh = _closed_mesh(proxy) if proxy.kind == "mesh" else None
-    _check_inside(proxy, thickness)
+    if solid:
+        _check_inside(proxy, thickness)
     plan = _layout(proxy, mesh, edge, thickness, amplitude)
     if plan.byte_count > budget:
         fitting = _fitting_edge(plan, budget)

@@ -1,0 +1,113 @@
+"""A volumetric detail about a proxy, as the fit sees it: baked to a grid and marched.
+
+The proxy's density is shifted by the relief (scene.hypertexture). A solid detail is opaque within about a cell and shaded
+on its gradient; a medium scatters (scene.medium). The plane that fills a photo becomes a slab of solid matter, or a sheet:
+matter on both sides of the plane z = 0, between which the background may show.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+
+from voldetail.detail import Detail
+from voldetail.scene.hypertexture import Hypertexture
+from voldetail.scene.marched import MarchedVolume
+from voldetail.scene.medium import Medium
+from voldetail.scene.setup import ProxySetup
+from voldetail.scene.shell import Shell, make_shell
+from voldetail.scene.shell_plan import DEFAULT_BUDGET, ShellPlan, plan_shell
+from voldetail.scene.view import View
+
+SOLID_CELLS = 3.0
+"""Thickness of solid matter's shell in cells: thinner, the grid shows through; thicker, small relief is rounded off."""
+
+SOLID_DEPTH = 1.5
+"""Optical depth of a cell of solid matter: a surface within two cells, whose densities a pixel's ray still tells apart."""
+
+MARGIN = 16
+"""Cells beyond the window that a view keeps of a volume, which cast shadows into it; as for a displaced plane."""
+
+SHEET = 1e-3
+"""Thickness in scene units of a sheet's own body: as good as none."""
+
+MESH_STEP = 1.25
+"""A mesh's distances are computed for a shell up to this factor thicker and higher than needed, and kept for as long as
+they serve."""
+
+
+class Volume(MarchedVolume):
+    """``proxy`` under a volumetric detail, seen through ``view``; `update` bakes, `march` looks.
+
+    edge: of a cell in scene units. scale: how many times larger the detail is. whole_plane: the proxy is the plane that
+    fills the view. Raises InputError for an open mesh, and for a grid of more than ``budget`` bytes.
+    """
+
+    def __init__(
+        self, proxy: ProxySetup, view: View, *, edge: float | None = None, scale: float = 1.0, whole_plane: bool = False,
+        budget: int = DEFAULT_BUDGET,
+    ) -> None:
+        super().__init__(view)
+        self.proxy, self.edge, self.scale, self.whole_plane = proxy, edge or view.pixel, scale, whole_plane
+        self.budget = budget
+        self._kept: Shell | None = None
+
+    def update(self, detail: Detail) -> None:
+        """Bake ``detail`` and make it ready to be looked at."""
+        self.one_sided_sky = self.proxy.kind == "plane" and detail.medium is None
+        self.fill(self.texture(detail).bake(), medium_of(detail, self.edge, self.scale))
+
+    def texture(self, detail: Detail) -> Hypertexture:
+        """Return the density of ``detail``, with the plan of its grid."""
+        medium = detail.medium
+        amplitude = detail.relief.amplitude * self.scale
+        thickness = SOLID_CELLS * self.edge if medium is None else max(medium.thickness * self.scale, 2.0 * self.edge)
+        exponent = 1.0 if medium is None else medium.exponent
+        return Hypertexture(self._shell(thickness, amplitude, medium is None), detail, exponent, self.scale)
+
+    def _shell(self, thickness: float, amplitude: float, solid: bool) -> Shell:
+        if self.proxy.kind == "mesh":
+            kept = self._kept
+            if kept is not None and kept.plan.thickness == thickness and kept.plan.amplitude >= amplitude:
+                return kept
+            amplitude *= MESH_STEP
+        margin = MARGIN * self.edge if solid else thickness / 2 + amplitude + self.edge
+        plan = plan_shell(self._placed(margin, solid), self.edge, thickness, amplitude, self.budget, solid=solid)
+        shell = make_shell(plan if self.view.perspective else windowed(plan, self.view, margin))
+        self._kept = shell
+        return shell
+
+    def _placed(self, margin: float, solid: bool) -> ProxySetup:
+        """Return the proxy; the plane that fills the view as large as that and ``margin``, as a sheet where not solid."""
+        if not self.whole_plane:
+            return self.proxy
+        view, (x, y, _) = self.view, self.proxy.position
+        reach = [2.0 * (max(abs(view.left - x), abs(view.right - x)) + margin), 2.0 * (max(abs(view.bottom - y), abs(view.top - y)) + margin)]
+        if solid:
+            return self.proxy.model_copy(update={"size": (reach[0], reach[1], 0.0)})
+        return self.proxy.model_copy(update={"kind": "box", "size": (reach[0] + 2 * margin, reach[1] + 2 * margin, SHEET)})
+
+
+def medium_of(detail: Detail, edge: float, scale: float = 1.0) -> Medium:
+    """Return what the matter of ``detail`` does to light, on cells of ``edge``; lengths grow with ``scale``."""
+    medium = detail.medium
+    if medium is None:
+        return Medium(SOLID_DEPTH / edge)
+    return Medium(medium.extinction / scale, medium.asymmetry)
+
+
+def windowed(plan: ShellPlan, view: View, margin: float) -> ShellPlan:
+    """Return ``plan`` without the cells that lie more than ``margin`` beside the window of a parallel ``view``."""
+    (x, y, z), (nz, ny, nx) = plan.lower, plan.shape
+    starts, counts = [], []
+    for low, count, least, most in ((x, nx, view.left, view.right), (y, ny, view.bottom, view.top)):
+        start = max(0, math.floor((least - margin - low) / plan.edge))
+        stop = min(count, math.ceil((most + margin - low) / plan.edge))
+        starts.append(low + min(start, count - 1) * plan.edge)
+        counts.append(max(stop - start, 1))
+    share = counts[0] * counts[1] / (nx * ny)
+    return replace(
+        plan, lower=(starts[0], starts[1], z), shape=(nz, counts[1], counts[0]),
+        byte_count=int(plan.byte_count * share), seconds=plan.seconds * share,
+    )
