@@ -6,7 +6,6 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.cli.outputs import check_folder, make_folder, remove
@@ -92,6 +91,5 @@ class FitFolder:
         from voldetail.image import save_png
 
         save_detail(self.path / DETAIL, result.detail)
-        tint = np.asarray(result.target.tint, dtype=np.float32)
-        save_png(self.path / FIT, result.picture[..., None] * tint)
+        save_png(self.path / FIT, result.coloured)
         remove([self.path / PREVIEW])

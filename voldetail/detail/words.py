@@ -48,7 +48,7 @@ def summary(detail: Detail) -> str:
     raised = {"displacement": "raised", "volume": "shifting solid matter" if detail.medium is None else "shifting a medium"}
     parts.append(f"{raised[detail.mode]} by up to {detail.relief.amplitude:.2g} scene units")
     if detail.medium is not None:
-        parts.append(f"which is {detail.medium.thickness:.2g} thick to its edge, with an extinction of {detail.medium.extinction:.2g}")
+        parts.append(f"soft over {detail.medium.thickness:.2g}, with an extinction of {detail.medium.extinction:.2g}")
         return ", ".join(parts) + "."
     glossy = detail.reflectance.specular > _GLOSSY
     parts.append(f"glossy (shininess {detail.reflectance.shininess:.2g})" if glossy else "matte")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -60,8 +61,33 @@ ARCHETYPES: tuple[tuple[str, Kind, dict[str, float]], ...] = (
 )
 """Name, kind and numbers of each look; scale, roughness and stretch are varied over them."""
 
+CLOUDS: tuple[tuple[str, Kind, dict[str, float]], ...] = (
+    ("cumulus", Kind(1, 50, "gaussian", 3, False),
+     {"noise.lacunarity": 2.2, "softness": 0.5, "depth": 20.0, "medium.exponent": 1.5, "medium.asymmetry": 0.6}),
+    ("heaps", Kind(1, 2, "gaussian", 3, False),
+     FALLING | {"noise.lacunarity": 2.2, "softness": 0.5, "depth": 20.0, "medium.exponent": 1.0, "medium.asymmetry": 0.6}),
+    ("broken heaps", Kind(1, 50, "gaussian", 3, False),
+     FALLING | {"noise.lacunarity": 2.2, "softness": 1.5, "depth": 20.0, "medium.exponent": 6.0, "medium.asymmetry": 0.6}),
+    ("tufts", Kind(1, 2, "exponential", 2, False),
+     {"noise.lacunarity": 2.5, "softness": 1.0, "depth": 10.0, "medium.exponent": 5.0, "medium.asymmetry": 0.5}),
+    ("veil", Kind(1, 50, "gaussian", 3, False),
+     {"noise.lacunarity": 2.0, "softness": 3.0, "depth": 2.0, "medium.exponent": 4.0, "medium.asymmetry": 0.7}),
+    ("fibres", Kind(1, 50, "gaussian", 2, True),
+     {"noise.stripe_frequency": 1.0, "noise.stripe_spread": 0.5, "noise.lacunarity": 2.0, "softness": 2.0, "depth": 3.0,
+      "medium.exponent": 4.0, "medium.asymmetry": 0.7}),
+    ("smoke", Kind(1, 50, "gaussian", 3, False, fold="ridge"),
+     {"noise.lacunarity": 2.0, "softness": 2.0, "depth": 4.0, "medium.exponent": 4.0, "medium.asymmetry": 0.3}),
+)
+"""The same for a medium."""
+
 SCALES = 5
 ROUGHNESS = (0.25, 0.6)
+MEDIUM_ROUGHNESS = (0.7, 1.7)
+
+
+def looks_of(space: Space) -> tuple[tuple[str, Kind, dict[str, float]], ...]:
+    """Return the looks that can be searched in ``space``."""
+    return CLOUDS if space.medium else ARCHETYPES
 
 
 def archetypes(space: Space, anisotropy: tuple[float, float]) -> list[Candidate]:
@@ -72,7 +98,10 @@ def archetypes(space: Space, anisotropy: tuple[float, float]) -> list[Candidate]
     low, high = np.log(space.scale[0]), np.log(space.scale[1])
     factor, angle = anisotropy
     out = []
-    for (_, kind, numbers), step, rough in itertools.product(ARCHETYPES, range(SCALES), ROUGHNESS):
+    roughness = MEDIUM_ROUGHNESS if space.medium else ROUGHNESS
+    for (_, kind, numbers), step, rough in itertools.product(looks_of(space), range(SCALES), roughness):
+        if not space.pigmented:
+            kind = replace(kind, pigment=False)
         scale = float(np.exp(low + (high - low) * (0.3 + 0.6 * step / (SCALES - 1))))
         # The light alone makes relief look stretched; half of the spectrum's stretch is taken for the relief's own.
         values = {

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from voldetail.detail import MONOTONE_CURVES, PAPER_NEIGHBOURS, START_CURVES
-from voldetail.fit.space import Kind, Space, Vector, shape_of
+from voldetail.fit.space import MEDIUM_NAMES, Kind, Space, Vector, shape_of
 
 
 @dataclass(frozen=True)
@@ -50,6 +50,7 @@ def sampled(
         (ranks, character)
         for ranks, character in itertools.product(PAPER_NEIGHBOURS, CHARACTERS if extended else CHARACTERS[:2])
         if not (character[2] and ranks != (1, 2)) and not (character[3] and ranks != (1, 50))
+        and not (space.medium and any(character[2:]))  # a cloud has no stones, no plates and no paving
     ]
     generator = qmc.Sobol(d=14, scramble=True, seed=np.random.default_rng(seed))
     points = generator.random_base2(math.ceil(math.log2(max(count, 2))))[:count]
@@ -59,7 +60,7 @@ def sampled(
         (first, last), (striped, fold, grains, stones, plates) = families[index % len(families)]
         kind = Kind(
             first, last, "gaussian" if point[8] < 0.5 else "exponential", 1 + int(point[9] * 3), striped, fold, grains,
-            extended and point[10] < 0.5, stones, plates,
+            extended and space.pigmented and point[10] < 0.5, stones, plates,
         )
         low, high = space.scale
         rough_low, rough_high = space.roughness
@@ -83,6 +84,9 @@ def sampled(
             "noise.size_spread": 0.7 * float(point[13]),
             "noise.stripe_spread": math.pi * (1.0 if point[6] < 0.5 else float(point[7])),
         } | {f"shape.{i}": float(v) for i, v in enumerate(shape_of(shape))}
+        if space.medium:
+            # The places of the sequence that pigment and stones, which a medium has not, would take.
+            values |= {name: space.at(name, float(point[10 + i])) for i, name in enumerate(MEDIUM_NAMES)}
         out.append(Candidate(kind, space.encode(kind, values)))
     return out
 

@@ -2,34 +2,31 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import math
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
-from datetime import UTC, datetime
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import JsonValue
 
-from voldetail import __version__
 from voldetail.backend import mitsuba
-from voldetail.detail import Detail, NoiseFloor, Provenance, bounds, rounded
+from voldetail.detail import Detail, bounds, rounded
 from voldetail.errors import InputError, VoldetailError
-from voldetail.files import sha256
 from voldetail.fit.autolight import resolve_light
 from voldetail.fit.interval import AmplitudeInterval, amplitude_interval
 from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.objective import Evaluation, Objective
 from voldetail.fit.plans import Stage, default_plan, paper_plan
+from voldetail.fit.provenance import Findings, signed
+from voldetail.fit.ranges import MEDIUM_ROUGHNESS, ROUGHNESS, SOLID_ROUGHNESS
+from voldetail.fit.reflectance import colours
 from voldetail.fit.session import Progress, Session, State, Stopped, derived_seed
 from voldetail.fit.space import Space
 from voldetail.fit.target import Target, load_photo_of, make_target
-from voldetail.image import Photo
-from voldetail.metric import METRICS, describe, distance
+from voldetail.image import Photo, luminance
+from voldetail.metric import METRICS
 from voldetail.metric.anisotropy import anisotropy
-from voldetail.scene.build import build
-from voldetail.scene.lights_text import light_text
+from voldetail.scene.build import build, edge_of
 from voldetail.scene.setup import SMALLEST_ZONE, Setup
 from voldetail.scene.view import view_of
 
@@ -57,12 +54,15 @@ class FitResult:
 
     setup: the one that was fitted, with the direction found where its light was "auto", and then light_guess.
     heights: the amplitudes that fit about as well; None where the user gave the amplitude or stopped the fit.
+    picture (H, W): its luminance. covered (H, W): the share of each pixel that is filled; background: what shows through.
     """
 
     detail: Detail
     setup: Setup
     target: Target
     picture: NDArray[np.float32]
+    covered: NDArray[np.float32]
+    background: tuple[float, float, float]
     distance: float
     evaluations: int
     seconds: float
@@ -71,6 +71,14 @@ class FitResult:
     interrupted: bool
     light_guess: LightGuess | None = None
     heights: AmplitudeInterval | None = None
+
+    @property
+    def coloured(self) -> NDArray[np.float32]:
+        """The picture (H, W, 3) in the photo's colours."""
+        behind = np.asarray(self.background, dtype=np.float32)
+        through = (1.0 - self.covered)[..., None] * behind
+        matt = np.maximum(self.picture - luminance(through), 0.0)[..., None]
+        return np.asarray(matt * np.asarray(self.detail.reflectance.tint, dtype=np.float32) + through, dtype=np.float32)
 
 
 def fit(
@@ -112,10 +120,13 @@ def fit(
         raise VoldetailError("The fit was stopped before a first detail was found: let it run a little longer.")
     final = _finish(session)
     heights = None if interrupted else _heights(setup, session, final)
+    final, background = _coloured(target, final)
     return FitResult(
-        detail=_sign(setup, target, session, final, status, light_guess, heights), setup=setup, target=target,
-        picture=final.picture, distance=final.distance, evaluations=session.evaluations, seconds=session.seconds,
-        status=status, trace=tuple(session.trace), interrupted=interrupted, light_guess=light_guess, heights=heights,
+        detail=signed(final, setup, target, session, Findings(status, light_guess, heights, background)),
+        setup=setup, target=target,
+        picture=final.picture, covered=final.covered, background=background, distance=final.distance,
+        evaluations=session.evaluations, seconds=session.seconds, status=status, trace=tuple(session.trace),
+        interrupted=interrupted, light_guess=light_guess, heights=heights,
     )
 
 
@@ -126,16 +137,19 @@ def space_of(setup: Setup, target: Target) -> Space:
     """
     view = view_of(setup.camera, target.shape, target.zone, setup.photo.resolution)
     lowest, highest = bounds("noise.scale")
+    # What shows no finer than a pixel, or than a cell of the grid that a volume is baked to.
+    grain = max(view.pixel, edge_of(setup, view)) if setup.mode == "volume" else view.pixel
     coarsest = max(1.0 / (LARGEST_CELL * max(view.rows, view.columns) * view.pixel), lowest)
-    finest = min(1.0 / (SMALLEST_CELL * view.pixel), highest)
+    finest = min(1.0 / (SMALLEST_CELL * grain), highest)
     if not coarsest < finest:
         raise InputError(
             f"The zone of {target.zone[2]} x {target.zone[3]} pixels is too small a part of its photo of"
             f" {target.shape[1]} x {target.shape[0]}: crop the photo, or use a larger --zone."
         )
     return Space(
-        domain=setup.domain, scale=(coarsest, finest), finest=1.0 / (FINEST_OCTAVE * view.pixel),
-        amplitude=setup.amplitude, plain=setup.fit.solver == "paper",
+        domain=setup.domain, scale=(coarsest, finest), finest=1.0 / (FINEST_OCTAVE * grain),
+        amplitude=setup.amplitude, plain=setup.fit.solver == "paper", mode=setup.mode, medium=setup.medium,
+        roughness=MEDIUM_ROUGHNESS if setup.medium else SOLID_ROUGHNESS if setup.mode == "volume" else ROUGHNESS,
     )
 
 
@@ -144,7 +158,8 @@ def _session(
     on_progress: Callable[[Progress], None], on_state: Callable[[State], None],
 ) -> tuple[Session, tuple[Stage, ...]]:
     planner = paper_plan if setup.fit.solver == "paper" else default_plan
-    plan = planner(anisotropy(target.luminance, target.mask), setup.fit.evaluations)
+    space = space_of(setup, target)
+    plan = planner(space, anisotropy(target.luminance, target.mask), setup.fit.evaluations)
     coarse = _coarse(setup, target)
     both = setup.fit.solver != "paper" and coarse.target is not target
     fine = Objective(
@@ -154,7 +169,7 @@ def _session(
     # The budget that the user named is a limit; the plan's own is an estimate with room for rounding.
     planned = setup.fit.evaluations or plan.evaluations
     session = Session(
-        coarse, fine, space_of(setup, target), setup.seed, planned, setup.fit.seeds, setup.fit.time_limit,
+        coarse, fine, space, setup.seed, planned, setup.fit.seeds, setup.fit.time_limit,
         on_progress, on_state, start, stages=len(plan.stages),
     )
     return session, plan.stages
@@ -189,54 +204,24 @@ def _finish(session: Session) -> Evaluation:
     return min((session.fine.evaluate(details[0], seed) for seed in seeds), key=lambda e: e.score)
 
 
+def _coloured(target: Target, final: Evaluation) -> tuple[Evaluation, tuple[float, float, float]]:
+    """Return ``final`` with the colour of its medium apart from that of what shows through it, and the latter."""
+    if final.detail.medium is None:
+        return final, (0.0, 0.0, 0.0)
+    through = np.asarray(final.background * (1.0 - final.covered), dtype=np.float32)
+    tint, behind = colours(target.pixels, final.picture - through, through, final.mask)
+    reflectance = final.detail.reflectance.model_copy(update={"tint": tint})
+    coloured = replace(final, detail=final.detail.model_copy(update={"reflectance": reflectance}))
+    r, g, b = (final.background * v for v in behind)
+    return coloured, (r, g, b)
+
+
 def _heights(setup: Setup, session: Session, final: Evaluation) -> AmplitudeInterval | None:
     """Return how well the photo tells the amplitude, None where the user gave it, or would not wait for it."""
-    if setup.amplitude is not None or final.detail.relief.amplitude <= 0:
+    if setup.amplitude is not None or setup.medium or final.detail.relief.amplitude <= 0:
         return None
     seeds = [session.unseen_seed(index) for index in range(INTERVAL_SEEDS)]
     try:
         return amplitude_interval(session.fine, final.detail, seeds)
     except KeyboardInterrupt:
-        return None
-
-
-def _sign(
-    setup: Setup, target: Target, session: Session, final: Evaluation, status: str, light_guess: LightGuess | None,
-    heights: AmplitudeInterval | None,
-) -> Detail:
-    """Return the detail with its noise floor and provenance."""
-    other = session.fine.evaluate(final.detail, derived_seed(session.root_seed, "floor"))
-    floor = _floor(final, other, setup.fit.metric)
-    settings: dict[str, JsonValue] = {"root_seed": setup.seed, "status": status, "noise_seeds": setup.fit.seeds}
-    if light_guess is not None:
-        settings["light_estimated"] = dict(asdict(light_guess))
-    if heights is not None:
-        settings["amplitude_interval"] = {key: float(f"{value:.3g}") for key, value in heights.ends.items()}
-    version = importlib.metadata.version
-    provenance = Provenance(
-        voldetail=__version__, created=datetime.now(UTC).isoformat(timespec="seconds"), photo=setup.photo.name,
-        photo_sha256=target.photo.sha256, mask_sha256=sha256(setup.mask) if setup.mask else None,
-        zone=target.zone, resolution=setup.photo.resolution,
-        light=light_text(setup.light), proxy=setup.proxy.kind, solver=setup.fit.solver, metric=setup.fit.metric,
-        evaluations=session.evaluations, seconds=round(session.seconds, 2), distance=final.distance,
-        mitsuba=version("mitsuba"), drjit=version("drjit"), numpy=version("numpy"),
-        settings=settings,
-    )
-    named = final.detail.model_copy(
-        update={
-            "name": (setup.photo.skimage or setup.photo.name)[:200],
-            "noise_floor": NoiseFloor(other_seed=floor, photo_halves=target.photo_halves),
-            "provenance": provenance,
-        }
-    )
-    return rounded(Detail.model_validate(named.model_dump()))
-
-
-def _floor(one: Evaluation, other: Evaluation, metric: str) -> float | None:
-    """Return the distance between two seeds of one detail, or None where they share too little to be compared."""
-    mask = one.mask & other.mask
-    try:
-        own = describe(one.picture, mask, metric=metric)
-        return distance(own, describe(other.picture, mask, like=own))
-    except InputError:
         return None

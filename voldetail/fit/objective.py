@@ -18,6 +18,7 @@ from voldetail.metric import Descriptor, describe, distance
 from voldetail.render import SHININESS, Components, components
 from voldetail.scene.heightfield import HeightField
 from voldetail.scene.surface import MeshSurface
+from voldetail.scene.volume import Volume
 
 UNUSABLE = 1e3
 """Distance of a picture that cannot be compared (the surface left the mask): far, but a number for the search."""
@@ -30,7 +31,8 @@ COVERED = 0.999
 class Evaluation:
     """A detail with its solved reflectance, its distance from the photo and its picture (linear luminance).
 
-    score: what a search should lower, see `Objective`.
+    score: what a search should lower, see `Objective`. covered (H, W): share of a pixel that is filled. background:
+    luminance of what shows through a medium.
     """
 
     detail: Detail
@@ -38,6 +40,8 @@ class Evaluation:
     score: float
     picture: NDArray[np.float32]
     mask: NDArray[np.bool_]
+    covered: NDArray[np.float32]
+    background: float = 0.0
 
 
 class Objective:
@@ -50,11 +54,13 @@ class Objective:
     """
 
     def __init__(
-        self, target: Target, surface: HeightField | MeshSurface, *, specular: bool, subsamples: int = 2,
+        self, target: Target, surface: HeightField | MeshSurface | Volume, *, specular: bool, subsamples: int = 2,
         reduced: Target | None = None,
     ) -> None:
         self.target, self.surface = target, surface
-        self.specular, self.subsamples, self.reduced = specular, subsamples, reduced
+        # A volume's edges are as soft as a cell: more samples cost three times as much and show nothing new.
+        self.subsamples = 1 if isinstance(surface, Volume) else subsamples
+        self.specular, self.reduced = specular, reduced
         self.evaluations = 0
 
     def evaluate(self, detail: Detail, seed: int | None = None) -> Evaluation:
@@ -85,11 +91,14 @@ class Objective:
         return detail, components(self.surface, self.target.lamp, subsamples=self.subsamples, shininess=SHININESS)
 
     def _compared(self, detail: Detail, parts: Components) -> Evaluation:
-        mask = self.target.mask & (parts.covered > COVERED)
+        medium = detail.medium is not None
+        mask = self.target.mask if medium else self.target.mask & (parts.covered > COVERED)
         if not mask.any():
-            return Evaluation(detail, UNUSABLE, UNUSABLE, np.zeros_like(self.target.luminance), mask)
-        found = solve(self.target.luminance, parts, mask, specular=self.specular)
+            return Evaluation(detail, UNUSABLE, UNUSABLE, np.zeros_like(self.target.luminance), mask, parts.covered)
+        found = solve(self.target.luminance, parts, mask, specular=self.specular, background=medium)
         picture = parts.luminance(found.ambient, found.diffuse, found.specular, found.shininess)
+        if medium:
+            picture = picture + np.float32(found.background) * (1.0 - parts.covered)
         picture = np.minimum(picture, self.target.white)
         detail = detail.model_copy(
             update={
@@ -107,7 +116,7 @@ class Objective:
                 score = 0.5 * (value + self._reduced_distance(self.reduced, picture, mask))
         except InputError:
             value = score = UNUSABLE
-        return Evaluation(detail, value, score, picture, mask)
+        return Evaluation(detail, value, score, picture, mask, parts.covered, found.background)
 
     def _reduced_distance(self, reduced: Target, picture: NDArray[np.float32], mask: NDArray[np.bool_]) -> float:
         used = reduced.mask

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from voldetail.fit.archetypes import ARCHETYPES, ROUGHNESS, SCALES, archetypes
+from voldetail.fit.archetypes import archetypes
 from voldetail.fit.candidates import Candidate, best_distinct, paper_grid, sampled
 from voldetail.fit.search import GradientDescent
 from voldetail.fit.session import Session, derived_seed
+from voldetail.fit.space import Space
 
 Anisotropy = tuple[float, float]
 
@@ -32,48 +33,59 @@ class Plan:
     evaluations: int
 
 
-COVER = 300
-"""Samples that cover the space, 15 for each of the 20 families of noise; the archetypes come on top."""
+@dataclass(frozen=True)
+class Effort:
+    """Numbers of the default plan.
 
-ROUNDS = ((10, 50, False), (6, 80, False), (3, 90, True), (2, 110, True))
-"""Successive halving: candidates kept, evaluations for each, at full resolution or half. A family that is only badly
-sampled so far gets its chance, and most of the effort goes where it pays."""
+    cover: samples that cover the space; the archetypes come on top. rounds: of successive halving, candidates kept,
+    evaluations for each, at full resolution or half: a family that is only badly sampled so far gets its chance, and most
+    of the effort goes where it pays. last: evaluations for the winner.
+    """
 
-LAST = 130
+    cover: int
+    rounds: tuple[tuple[int, int, bool], ...]
+    last: int
+
+
+SURFACE_EFFORT = Effort(300, ((10, 50, False), (6, 80, False), (3, 90, True), (2, 110, True)), 130)
+"""15 samples for each of the 20 families of noise; tuned on the recovery cases of tests/benchmarks and six photos, for a fit
+of about a minute on two cores."""
+
+VOLUME_EFFORT = Effort(220, ((8, 40, False), (5, 60, False), (3, 80, False), (2, 50, True)), 60)
+"""A picture of a volume at full resolution takes as long as ten of a relief: for a fit of under three minutes."""
+
 UNSEEN_SEEDS = 3
-"""Numbers of the default plan; tuned on the recovery cases of tests/benchmarks and six photos, for a fit of about a
-minute on two cores."""
 
 
-def default_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
+def default_plan(space: Space, anisotropy: Anisotropy, evaluations: int | None) -> Plan:
     """Return our plan: cover the space at half resolution, then CMA-ES from ever fewer candidates.
 
     ``evaluations`` scales every stage; None means the tuned numbers.
     """
-    fine_rounds = [index for index, (_, _, fine) in enumerate(ROUNDS) if fine]
-    ranked = UNSEEN_SEEDS * (sum(ROUNDS[index][0] for index in (fine_rounds[0] - 1, *fine_rounds)) + 2)
-    looks = len(ARCHETYPES) * SCALES * len(ROUGHNESS)
-    total = looks + COVER + sum(count * each for count, each, _ in ROUNDS) + LAST + ranked
+    effort = SURFACE_EFFORT if space.mode == "displacement" else VOLUME_EFFORT
+    rounds = effort.rounds
+    fine_rounds = [index for index, (_, _, fine) in enumerate(rounds) if fine]
+    ranked = UNSEEN_SEEDS * (sum(rounds[index][0] for index in (fine_rounds[0] - 1, *fine_rounds)) + 2)
+    looks = archetypes(space, anisotropy)
+    total = len(looks) + effort.cover + sum(count * each for count, each, _ in rounds) + effort.last + ranked
     factor = 1.0 if evaluations is None else evaluations / total
 
     def scaled(count: int) -> int:
         return max(4, round(count * factor))
 
     def cover(session: Session) -> None:
-        candidates = archetypes(session.space, anisotropy)
-        if factor < 1.0:
-            candidates = candidates[:: math.ceil(1.0 / factor)]
-        candidates += sampled(session.space, scaled(COVER), derived_seed(session.root_seed, "cover"), anisotropy)
+        candidates = looks[:: math.ceil(1.0 / factor)] if factor < 1.0 else list(looks)
+        candidates += sampled(space, scaled(effort.cover), derived_seed(session.root_seed, "cover"), anisotropy)
         _compare(session, candidates)
-        session.pool = best_distinct(session.pool, ROUNDS[0][0])
+        session.pool = best_distinct(session.pool, rounds[0][0])
 
     def halving(index: int) -> Callable[[Session], None]:
-        count, each, fine = ROUNDS[index]
+        count, each, fine = rounds[index]
 
         def run(session: Session) -> None:
             session.pool = session.pool[:count]
             _refine_pool(session, scaled(each), fine=fine)
-            if fine or ROUNDS[index + 1][2]:
+            if fine or rounds[index + 1][2]:
                 # What goes on to full resolution is chosen there: families that tie at half of it do not at full.
                 _rank(session)
             else:
@@ -84,12 +96,12 @@ def default_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
     def last(session: Session) -> None:
         before = session.pool[0]
         session.pool = [before]
-        _refine_one(session, 0, scaled(LAST), fine=True)
+        _refine_one(session, 0, scaled(effort.last), fine=True)
         # What was there stays in the race: the last search may have fitted its own seeds only.
         session.pool = [session.pool[0], before]
         _rank(session)
 
-    names = ("trying ten families", "searching the better half", "refining the best three", "refining the best two")
+    names = ("trying many families", "searching the better half", "refining the best three", "refining the best two")
     return Plan(
         (
             Stage("covering the space", cover),
@@ -107,7 +119,7 @@ PAPER_KEPT = 6
 PAPER_EVALUATIONS = 3000
 
 
-def paper_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
+def paper_plan(space: Space, anisotropy: Anisotropy, evaluations: int | None) -> Plan:
     """Return GD10's plan: coarse samples compared at the coarse level, then gradient descent from the closest few.
 
     The grid has thousands of points (the paper ran for hours); where the budget is smaller, an even random part of it
@@ -116,7 +128,7 @@ def paper_plan(anisotropy: Anisotropy, evaluations: int | None) -> Plan:
     total = evaluations or PAPER_EVALUATIONS
 
     def coarse(session: Session) -> None:
-        grid = paper_grid(session.space, anisotropy)
+        grid = paper_grid(space, anisotropy)
         count = min(len(grid), max(PAPER_KEPT, int(total * PAPER_SHARE)))
         chosen = np.random.default_rng(derived_seed(session.root_seed, "grid")).permutation(len(grid))[:count]
         _compare(session, [grid[i] for i in chosen])

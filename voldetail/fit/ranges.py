@@ -38,6 +38,18 @@ PLATE_DUST = (-0.1, 0.15)
 """Ranges where plates are searched: finer octaves are their roughness and no second set of cracks, and it is shadow, not
 paint, that darkens cracks. Tuned on gravel, which came out as a flat mosaic with painted lines."""
 
+ROUGHNESS = (0.05, 0.7)
+SOLID_ROUGHNESS = (0.05, 1.2)
+"""Range of the amplitude in cells, of displacement and of solid volumes: what overhangs may rise higher."""
+
+MEDIUM_ROUGHNESS = (0.3, 3.0)
+SOFTNESS = (0.3, 4.0)
+DEPTH = (0.5, 60.0)
+EXPONENT = (0.7, 10.0)
+ASYMMETRY = (0.0, 0.9)
+"""Ranges of a medium: its amplitude in cells, its shell's thickness and the optical depth in amplitudes, d_h and g. Drops of
+water and ice scatter forwards."""
+
 FOLD_HANDICAP = 1.2
 STRIPED_CELLS_HANDICAP = 1.15
 STONES_HANDICAP = 0.95
@@ -58,5 +70,8 @@ OF_PLATES = {"noise.gain": "plate_gain", "reflectance.height_albedo": "plate_dus
 
 PLAIN_NAME = {own: name for names in (OF_STONES, OF_PLATES) for name, own in names.items()}
 
-LOGARITHMIC = ("roughness", "stone_height", "stone_gain", "plate_gain", "stone_stretch", "noise.stripe_frequency")
+LOGARITHMIC = (
+    "softness", "depth", "medium.exponent", "roughness", "stone_height", "stone_gain", "plate_gain", "stone_stretch",
+    "noise.stripe_frequency",
+)
 """Numbers searched on a logarithmic scale though they are no parameter of a detail, or one that is declared linear."""

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from voldetail.image import luminance
 from voldetail.render import Components
 
 RANKS = 24
@@ -35,6 +36,9 @@ GLOSS_LIMIT = 0.06
 """Largest Ks: what a dielectric of index 1.65 reflects head-on. With more, white lichen on a slab of ../shared/data became
 a mirror."""
 
+LEAST_SHARE = 0.0722
+"""Of luminance that a channel carries: blue's in Rec. 709."""
+
 DARK = 0.03
 """Linear luminance below which differences count less and less, in the weights 1 / (q + DARK): about where sRGB's curve
 leaves its linear part."""
@@ -42,34 +46,46 @@ leaves its linear part."""
 
 @dataclass(frozen=True)
 class Coefficients:
-    """Ka, Kd, Ks, an exponent that was rendered, and the weighted residual of the order statistics."""
+    """Ka, Kd, Ks, an exponent that was rendered, and the weighted residual of the order statistics.
+
+    background: luminance of what shows through a medium.
+    """
 
     ambient: float
     diffuse: float
     specular: float
     shininess: float
     residual: float
+    background: float = 0.0
 
 
 def solve(
-    photo: NDArray[np.float32], parts: Components, mask: NDArray[np.bool_], *, specular: bool = True
+    photo: NDArray[np.float32], parts: Components, mask: NDArray[np.bool_], *, specular: bool = True,
+    background: bool = False,
 ) -> Coefficients:
     """Return the coefficients whose picture has the order statistics of ``photo`` (linear luminance, (H, W)).
 
-    ``mask`` (H, W) says which pixels count. With ``specular`` False, Ks is 0.
+    ``mask`` (H, W) says which pixels count. With ``specular`` False, Ks is 0. With ``background``, an even one shows
+    through where the object does not cover, I = Ka A + Kd D + B (1 - C), and there is no highlight.
     """
     index = np.flatnonzero(mask.ravel())
     index = index[:: max(1, len(index) // SAMPLES)]
     wanted = _group_means(np.sort(photo.ravel()[index]))
     weights = 1.0 / (wanted + DARK)
     ambient, diffuse = parts.ambient.ravel()[index], parts.diffuse.ravel()[index]
+    if background:
+        columns = np.stack([ambient, diffuse, 1.0 - parts.covered.ravel()[index]], axis=1).astype(np.float64)
+        found, residual = _alternate(columns, wanted, weights, np.array([0.3, 0.5, float(wanted[0])]), STEPS, (1.0, 1.0, 1.0))
+        return Coefficients(float(found[0]), float(found[1]), 0.0, parts.shininess[0], residual, float(found[2]))
     best: Coefficients | None = None
     # Matt first: a highlight has to be worth it.
     lobes = (-1, *range(len(parts.shininess))) if specular else (-1,)
     start, steps = np.array([0.3, 0.5]), STEPS
     for lobe in lobes:
-        columns = [ambient, diffuse] + ([parts.specular[lobe].ravel()[index]] if lobe >= 0 else [])
-        found, residual = _alternate(np.stack(columns, axis=1).astype(np.float64), wanted, weights, start, steps)
+        used = [ambient, diffuse] + ([parts.specular[lobe].ravel()[index]] if lobe >= 0 else [])
+        columns, count = np.stack(used, axis=1).astype(np.float64), len(used)
+        first = np.append(start, 0.05)[:count]
+        found, residual = _alternate(columns, wanted, weights, first, steps, (1.0, 1.0, GLOSS_LIMIT)[:count])
         # The other lobes start where the first one ended, so one step less settles them.
         start, steps = found[:2], STEPS - 1
         if best is None or residual < best.residual * (GLOSS_GAIN if best.specular == 0.0 else 1.0):
@@ -78,6 +94,34 @@ def solve(
             best = Coefficients(float(found[0]), float(found[1]), gloss, exponent, residual)
     assert best is not None
     return best
+
+
+def colours(
+    pixels: NDArray[np.float32], matt: NDArray[np.float32], through: NDArray[np.float32], mask: NDArray[np.bool_]
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Return the tint of a medium and the colour (both of luminance 1, or white) of what shows through it.
+
+    pixels (H, W, 3): the photo. matt, through (H, W): luminance of the two parts of the fitted picture. Pixels are sorted
+    by luminance, and in each of RANKS groups the photo's mean colour is tint x matt + colour x through: two unknowns for
+    each channel, by least squares, none negative.
+    """
+    photo_order = np.argsort(luminance(pixels)[mask])
+    picture_order = np.argsort((matt + through)[mask])
+    wanted = _group_means(pixels[mask][photo_order])
+    columns = _group_means(np.stack([matt[mask], through[mask]], axis=1)[picture_order])
+    largest = 3.0 / LEAST_SHARE  # no channel can be more than the whole luminance
+    found = np.array([
+        bounded_least_squares(columns, wanted[:, channel], (largest, largest)) for channel in range(3)
+    ])
+    return _of_luminance_one(found[:, 0]), _of_luminance_one(found[:, 1])
+
+
+def _of_luminance_one(colour: NDArray[np.float64]) -> tuple[float, float, float]:
+    brightness = float(luminance(colour[None, None].astype(np.float32))[0, 0])
+    if not brightness > 1e-6:
+        return 1.0, 1.0, 1.0
+    r, g, b = colour / brightness
+    return float(r), float(g), float(b)
 
 
 def _group_means(values: NDArray[np.floating]) -> NDArray[np.float64]:
@@ -90,15 +134,14 @@ def _group_means(values: NDArray[np.floating]) -> NDArray[np.float64]:
 
 def _alternate(
     columns: NDArray[np.float64], wanted: NDArray[np.float64], weights: NDArray[np.float64],
-    start: NDArray[np.float64], steps: int,
+    start: NDArray[np.float64], steps: int, upper: tuple[float, ...],
 ) -> tuple[NDArray[np.float64], float]:
-    """Alternate between sorting the picture and solving for its coefficients."""
-    current = np.append(start, 0.05)[: columns.shape[1]]
+    """Alternate between sorting the picture and solving for its coefficients, at most ``upper`` each."""
+    current = start
     residual = np.inf
     for _ in range(steps):
         order = np.argsort(columns @ current)
         means = _group_means(columns[order])
-        upper = (1.0, 1.0, GLOSS_LIMIT)[: columns.shape[1]]
         current = bounded_least_squares(means * weights[:, None], wanted * weights, upper)
         residual = float(np.mean((weights * (means @ current - wanted)) ** 2))
     return current, residual

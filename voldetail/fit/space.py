@@ -8,16 +8,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.detail import Detail, bounds, parameter
 from voldetail.detail.parameters import CURVE_POINTS
-from voldetail.detail.record import NoiseParameters, Reflectance, ReliefParameters
+from voldetail.detail.record import MediumParameters, NoiseParameters, Reflectance, ReliefParameters
 from voldetail.fit.ranges import (
+    ASYMMETRY,
     CELL_ALBEDO,
+    DEPTH,
     ELONGATION,
+    EXPONENT,
     FINEST_SPECKS,
     FOLD_HANDICAP,
     GAIN,
@@ -34,8 +38,10 @@ from voldetail.fit.ranges import (
     PLATE_HEIGHT,
     PLATE_TILT,
     PLATES_HANDICAP,
+    ROUGHNESS,
     SHAPE_RANGE,
     SIZE_SPREAD,
+    SOFTNESS,
     SPECKLE,
     STONE_GAIN,
     STONE_HEIGHT,
@@ -51,6 +57,8 @@ SHAPE_COUNT = 3
 GRAINS = (1.0, -1.0, 1.0)
 
 PIGMENT = ("height_albedo", "cell_albedo", "speckle", "speckle_scale")
+
+MEDIUM_NAMES = ("softness", "medium.exponent", "depth", "medium.asymmetry")
 
 FOLDS = ("none", "ridge", "billow")
 
@@ -98,17 +106,25 @@ class Space:
     domain: of the noise. scale: bounds of the cells per scene unit that the picture can show. finest: cells per scene
     unit above which an octave would be finer than the pixels. amplitude: the user's, or None if it is searched.
     anisotropy, roughness, stripes: bounds; roughness is the amplitude in cells, A_d s, which is better conditioned than
-    A_d: the slopes of the relief, and so its shading, go with it. plain: GD10's own numbers only.
+    A_d: the slopes of the relief, and so its shading, go with it. plain: GD10's own numbers only. mode, medium: of the
+    details. A medium's lengths are searched in amplitudes (softness T / A_d, depth sigma_t A_d), for the same reason.
     """
 
     domain: str
     scale: tuple[float, float]
     finest: float
     amplitude: float | None = None
-    roughness: tuple[float, float] = (0.05, 0.7)
+    roughness: tuple[float, float] = ROUGHNESS
     anisotropy: tuple[float, float] = (0.2, 5.0)
     stripes: tuple[float, float] = (0.2, 4.0)
     plain: bool = False
+    mode: Literal["displacement", "volume"] = "displacement"
+    medium: bool = False
+
+    @property
+    def pigmented(self) -> bool:
+        """Whether albedo may vary: the grid of a volume knows of density alone."""
+        return self.mode == "displacement" and not self.plain
 
     def names(self, kind: Kind) -> list[str]:
         """Return the names of the numbers of ``kind``, in order."""
@@ -123,6 +139,8 @@ class Space:
             out += ["noise.cell_height", "noise.cell_tilt", "noise.bevel"]
         if kind.striped:
             out += ["noise.stripe_frequency", "noise.stripe_spread"]
+        if self.medium:
+            out += MEDIUM_NAMES
         if kind.pigment:
             out += [f"reflectance.{name}" for name in PIGMENT]
         if kind.stones:
@@ -146,17 +164,22 @@ class Space:
             "noise.stripe_frequency": self.stripes, "reflectance.height_albedo": HEIGHT_ALBEDO,
             "reflectance.cell_albedo": CELL_ALBEDO, "reflectance.speckle": SPECKLE,
             "reflectance.speckle_scale": (specks / FINEST_SPECKS, specks),
+            "softness": SOFTNESS, "depth": DEPTH, "medium.exponent": EXPONENT, "medium.asymmetry": ASYMMETRY,
         }.get(name)
         low, high = own or bounds(name)
         return low, high, name in LOGARITHMIC or (name.startswith("noise.") and parameter(name).scale == "log")
+
+    def at(self, name: str, unit: float) -> float:
+        """Return the value of a number at ``unit``, 0 to 1, of its range."""
+        low, high, log = self.range_of(name)
+        return low * (high / low) ** unit if log else low + unit * (high - low)
 
     def decode(self, kind: Kind, vector: Vector) -> Detail:
         """Return the Detail at ``vector`` (each number in [0, 1]; angles wrap, the rest is clipped)."""
         values: dict[str, float] = {}
         for name, unit in zip(self.names(kind), vector, strict=True):
-            low, high, log = self.range_of(name)
             unit = unit % 1.0 if name == "noise.angle" else min(max(float(unit), 0.0), 1.0)
-            values[PLAIN_NAME.get(name, name)] = low * (high / low) ** unit if log else low + unit * (high - low)
+            values[PLAIN_NAME.get(name, name)] = self.at(name, unit)
         shape = np.array([values.get(f"shape.{i}", 0.0) for i in range(SHAPE_COUNT)])
         lacunarity = values.get("noise.lacunarity", parameter("noise.lacunarity").default)
         shown = 1 + int(max(0.0, math.log(self.finest / values["noise.scale"]) / math.log(lacunarity)))
@@ -178,7 +201,16 @@ class Space:
         pigment = Reflectance()
         if kind.pigment:
             pigment = pigment.model_copy(update={name: values[f"reflectance.{name}"] for name in PIGMENT})
-        return Detail(noise=noise, relief=ReliefParameters(amplitude=amplitude), reflectance=pigment)
+        medium = None
+        if self.medium:
+            thickness, extinction = values["softness"] * amplitude, values["depth"] / amplitude
+            medium = MediumParameters(
+                thickness=float(np.clip(thickness, *bounds("medium.thickness"))), exponent=values["medium.exponent"],
+                extinction=float(np.clip(extinction, *bounds("medium.extinction"))), asymmetry=values["medium.asymmetry"],
+            )
+        return Detail(
+            mode=self.mode, noise=noise, relief=ReliefParameters(amplitude=amplitude), reflectance=pigment, medium=medium
+        )
 
     def encode(self, kind: Kind, values: dict[str, float]) -> Vector:
         """Return the vector with the given numbers; those that are missing are in the middle."""

@@ -193,7 +193,10 @@ def _candidate(record: _CandidateRecord, setup: Setup, where: str) -> Candidate:
         # A detail that can be made is one that can be searched. The bounds do not matter here, only that no
         # octave is too fine for the space and so left out before it is checked.
         plain = setup.fit.solver == "paper"
-        Space(setup.domain, (1.0, 2.0), 1e30, setup.amplitude, plain=plain).decode(kind, vector)
+        space = Space(
+            setup.domain, (1.0, 2.0), 1e30, setup.amplitude, plain=plain, mode=setup.mode, medium=setup.medium
+        )
+        space.decode(kind, vector)
         covariance = _covariance(record, len(vector))
     except (ValueError, TypeError, OverflowError):
         raise InputError(

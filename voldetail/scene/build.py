@@ -13,6 +13,7 @@ from voldetail.scene.proxy import Proxy, make_proxy
 from voldetail.scene.setup import ProxySetup, Setup
 from voldetail.scene.surface import MeshSurface
 from voldetail.scene.view import View, Zone, view_of
+from voldetail.scene.volume import Volume, fitting_edge
 
 FLAT_MARGIN = 16
 """Pixels by which the mesh of a flat proxy is larger than the window, so that relief outside casts its shadows in."""
@@ -30,12 +31,15 @@ class Surface(Protocol):
 
 def build(
     setup: Setup, photo_shape: tuple[int, int], zone: Zone | None, *, fast: bool = True
-) -> HeightField | MeshSurface:
+) -> HeightField | MeshSurface | Volume:
     """Return the surface of ``setup`` seen through ``zone`` of a photo of ``photo_shape`` (rows, columns).
 
-    A plane that faces an orthographic camera becomes a HeightField when ``fast``; all else a MeshSurface in Mitsuba.
+    A plane that faces an orthographic camera becomes a HeightField when ``fast``, a volume a marched one; all else a
+    MeshSurface in Mitsuba.
     """
     view = view_of(setup.camera, photo_shape, zone, setup.photo.resolution)
+    if setup.mode == "volume":
+        return Volume(setup.proxy, view, edge=edge_of(setup, view), whole_plane=faces_camera(setup))
     if faces_camera(setup):
         if fast:
             return HeightField(view, setup.proxy.position)
@@ -43,6 +47,11 @@ def build(
     return MeshSurface(
         make_proxy(setup.proxy, view.pixel, setup.domain), view, one_sided_sky=setup.proxy.kind == "plane"
     )
+
+
+def edge_of(setup: Setup, view: View) -> float:
+    """Return the edge of a volume's cells: a pixel or two, or what a fit's thousands of pictures have time for."""
+    return fitting_edge(setup.proxy, view, solid=not setup.medium, whole_plane=faces_camera(setup))
 
 
 def faces_camera(setup: Setup) -> bool:

@@ -206,8 +206,28 @@ class Setup(Record):
         description="The amplitude A_d of the relief, in scene units; null: searched.",
     )
     domain: Literal["solid", "surface"] = declared("noise.domain")
+    mode: Literal["displacement", "volume"] = Field(
+        default="displacement",
+        description="Whether relief displaces the proxy's surface, or shifts the points of space through its density.",
+    )
+    look: Literal["surface", "medium"] = Field(
+        default="surface", description="How a volume is seen: as the surface of solid matter, or as a medium, as clouds."
+    )
     fit: FitSettings = Field(default_factory=FitSettings, description="How the search is done.")
     seed: int = Field(default=0, ge=0, le=LARGEST_SEED, description="The root of every random number.")
     output: Path | None = Field(
         default=None, description="The folder for results; null: one named by the photo."
     )
+
+    @property
+    def medium(self) -> bool:
+        """Whether the photo is of a medium."""
+        return self.mode == "volume" and self.look == "medium"
+
+    @model_validator(mode="after")
+    def _volume(self) -> Setup:
+        if self.mode == "displacement" and self.look == "medium":
+            raise ValueError('the look "medium" needs the mode "volume"; a displaced surface is solid')
+        if self.mode == "volume" and self.domain == "surface":
+            raise ValueError('the mode "volume" needs noise that fills space: leave the domain "solid"')
+        return self

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-
 from voldetail.detail import Detail
 from voldetail.scene.hypertexture import Hypertexture
 from voldetail.scene.marched import MarchedVolume
@@ -31,6 +30,15 @@ MARGIN = 16
 
 SHEET = 1e-3
 """Thickness in scene units of a sheet's own body: as good as none."""
+
+SOLID_PIXELS, MEDIUM_PIXELS = 1.0, 2.0
+"""Edge of a cell in pixels: a surface's outlines are as sharp as the pixels, a medium's density is soft."""
+
+FIT_SECONDS = 0.3
+"""Estimated time that baking a detail may take in a fit; larger scenes get coarser cells."""
+
+USUAL_AMPLITUDE = 0.1
+"""Scene units, for that estimate, which is not to change with the detail."""
 
 MESH_STEP = 1.25
 """A mesh's distances are computed for a shell up to this factor thicker and higher than needed, and kept for as long as
@@ -67,26 +75,48 @@ class Volume(MarchedVolume):
         return Hypertexture(self._shell(thickness, amplitude, medium is None), detail, exponent, self.scale)
 
     def _shell(self, thickness: float, amplitude: float, solid: bool) -> Shell:
+        wanted, kept = (thickness, amplitude), self._kept
+        if kept is not None:
+            planned = kept.plan
+            if thickness <= planned.thickness and thickness / 2 + amplitude <= planned.thickness / 2 + planned.amplitude:
+                # The distances serve; how thick the shell about them is, and how high relief may be, is free.
+                return replace(kept, plan=replace(planned, thickness=thickness, amplitude=amplitude))
+            thickness, amplitude = (MESH_STEP * max(v, w) for v, w in
+                                    ((thickness, planned.thickness), (amplitude, planned.amplitude)))
+        shell = make_shell(self.plan(thickness, amplitude, solid))
         if self.proxy.kind == "mesh":
-            kept = self._kept
-            if kept is not None and kept.plan.thickness == thickness and kept.plan.amplitude >= amplitude:
-                return kept
-            amplitude *= MESH_STEP
+            self._kept = shell
+            return replace(shell, plan=replace(shell.plan, thickness=wanted[0], amplitude=wanted[1]))
+        return shell
+
+    def plan(self, thickness: float, amplitude: float, solid: bool) -> ShellPlan:
+        """Return the grid for a shell of ``thickness`` with room for ``amplitude``, and what it takes."""
         margin = MARGIN * self.edge if solid else thickness / 2 + amplitude + self.edge
         plan = plan_shell(self._placed(margin, solid), self.edge, thickness, amplitude, self.budget, solid=solid)
-        shell = make_shell(plan if self.view.perspective else windowed(plan, self.view, margin))
-        self._kept = shell
-        return shell
+        return plan if self.view.perspective else windowed(plan, self.view, margin)
 
     def _placed(self, margin: float, solid: bool) -> ProxySetup:
         """Return the proxy; the plane that fills the view as large as that and ``margin``, as a sheet where not solid."""
         if not self.whole_plane:
             return self.proxy
         view, (x, y, _) = self.view, self.proxy.position
-        reach = [2.0 * (max(abs(view.left - x), abs(view.right - x)) + margin), 2.0 * (max(abs(view.bottom - y), abs(view.top - y)) + margin)]
+        furthest = max(abs(view.left - x), abs(view.right - x)), max(abs(view.bottom - y), abs(view.top - y))
+        reach = [2.0 * (far + margin) for far in furthest]
         if solid:
             return self.proxy.model_copy(update={"size": (reach[0], reach[1], 0.0)})
         return self.proxy.model_copy(update={"kind": "box", "size": (reach[0] + 2 * margin, reach[1] + 2 * margin, SHEET)})
+
+
+def fitting_edge(proxy: ProxySetup, view: View, *, solid: bool, whole_plane: bool) -> float:
+    """Return the edge of cells for a fit: SOLID_PIXELS or MEDIUM_PIXELS, more where baking would take over FIT_SECONDS."""
+    edge = (SOLID_PIXELS if solid else MEDIUM_PIXELS) * view.pixel
+    amplitude = min(USUAL_AMPLITUDE, 8.0 * edge)
+    while True:
+        volume = Volume(proxy, view, edge=edge, whole_plane=whole_plane)
+        thickness = SOLID_CELLS * edge if solid else 2.0 * amplitude
+        if volume.plan(thickness, amplitude, solid).seconds <= FIT_SECONDS:
+            return edge
+        edge *= 1.1
 
 
 def medium_of(detail: Detail, edge: float, scale: float = 1.0) -> Medium:

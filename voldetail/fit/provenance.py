@@ -1,0 +1,75 @@
+"""What a finished detail carries with it: its noise floor, and where it came from."""
+
+from __future__ import annotations
+
+import importlib.metadata
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+
+from pydantic import JsonValue
+
+from voldetail import __version__
+from voldetail.detail import Detail, NoiseFloor, Provenance, rounded
+from voldetail.errors import InputError
+from voldetail.files import sha256
+from voldetail.fit.interval import AmplitudeInterval
+from voldetail.fit.lightguess import LightGuess
+from voldetail.fit.objective import Evaluation
+from voldetail.fit.session import Session, derived_seed
+from voldetail.fit.target import Target
+from voldetail.metric import describe, distance
+from voldetail.scene.lights_text import light_text
+from voldetail.scene.setup import Setup
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What a fit found besides the detail, for its provenance; see FitResult."""
+
+    status: str
+    light_guess: LightGuess | None
+    heights: AmplitudeInterval | None
+    background: tuple[float, float, float]
+
+
+def signed(
+    final: Evaluation, setup: Setup, target: Target, session: Session, found: Findings
+) -> Detail:
+    """Return the detail with its noise floor and provenance."""
+    other = session.fine.evaluate(final.detail, derived_seed(session.root_seed, "floor"))
+    floor = _floor(final, other, setup.fit.metric)
+    settings: dict[str, JsonValue] = {"root_seed": setup.seed, "status": found.status, "noise_seeds": setup.fit.seeds}
+    if found.light_guess is not None:
+        settings["light_estimated"] = dict(asdict(found.light_guess))
+    if found.heights is not None:
+        settings["amplitude_interval"] = {key: float(f"{value:.3g}") for key, value in found.heights.ends.items()}
+    if final.detail.medium is not None:
+        settings["background"] = [float(f"{value:.4g}") for value in found.background]
+    version = importlib.metadata.version
+    provenance = Provenance(
+        voldetail=__version__, created=datetime.now(UTC).isoformat(timespec="seconds"), photo=setup.photo.name,
+        photo_sha256=target.photo.sha256, mask_sha256=sha256(setup.mask) if setup.mask else None,
+        zone=target.zone, resolution=setup.photo.resolution,
+        light=light_text(setup.light), proxy=setup.proxy.kind, solver=setup.fit.solver, metric=setup.fit.metric,
+        evaluations=session.evaluations, seconds=round(session.seconds, 2), distance=final.distance,
+        mitsuba=version("mitsuba"), drjit=version("drjit"), numpy=version("numpy"),
+        settings=settings,
+    )
+    named = final.detail.model_copy(
+        update={
+            "name": (setup.photo.skimage or setup.photo.name)[:200],
+            "noise_floor": NoiseFloor(other_seed=floor, photo_halves=target.photo_halves),
+            "provenance": provenance,
+        }
+    )
+    return rounded(Detail.model_validate(named.model_dump()))
+
+
+def _floor(one: Evaluation, other: Evaluation, metric: str) -> float | None:
+    """Return the distance between two seeds of one detail, or None where they share too little to be compared."""
+    mask = one.mask & other.mask
+    try:
+        own = describe(one.picture, mask, metric=metric)
+        return distance(own, describe(other.picture, mask, like=own))
+    except InputError:
+        return None
