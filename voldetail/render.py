@@ -24,7 +24,7 @@ from voldetail.detail import Reflectance
 from voldetail.scene.heightfield import HeightField
 from voldetail.scene.lamp import Lamp
 from voldetail.scene.marched import MarchedVolume
-from voldetail.scene.surface import MeshSurface
+from voldetail.scene.surface import TracedMesh
 from voldetail.scene.traced import path_integrator, sensor_of
 from voldetail.scene.traced_medium import TracedVolume
 
@@ -62,7 +62,7 @@ class Components:
 
 
 def components(
-    surface: HeightField | MeshSurface | MarchedVolume, lamp: Lamp, *, subsamples: int = 2,
+    surface: HeightField | TracedMesh | MarchedVolume, lamp: Lamp, *, subsamples: int = 2,
     shininess: tuple[float, ...] = SHININESS,
 ) -> Components:
     """Return the unit components of the surface as it was last updated, ``subsamples`` squared samples a pixel.
@@ -81,7 +81,7 @@ def components(
 
 
 def _reflected(
-    surface: HeightField | MeshSurface, lamp: Lamp, subsamples: int, shininess: tuple[float, ...]
+    surface: HeightField | TracedMesh, lamp: Lamp, subsamples: int, shininess: tuple[float, ...]
 ) -> list[Any]:
     """Return (covered, ambient, diffuse, a lobe for each of ``shininess``) of a surface's samples, row by row."""
     mi = mitsuba()
@@ -111,10 +111,12 @@ def _pool(samples: NDArray[np.float32], shape: tuple[int, int], subsamples: int)
     return np.asarray(total * np.float32(1.0 / subsamples**2), dtype=np.float32)
 
 
-def traced_picture(surface: MeshSurface | TracedVolume, samples: int, background: float, seed: int = 0) -> NDArray[np.float32]:
+def traced_picture(
+    surface: TracedMesh | TracedVolume, samples: int, background: float | tuple[float, float, float], seed: int = 0
+) -> NDArray[np.float32]:
     """Return the path-traced picture (H, W, 3) of a surface or volume whose scene holds its lights.
 
-    What shows behind it is ``background``: the environment lights the object and is not itself shown.
+    What shows behind it is ``background``, a number or a colour: the environment lights the object and is not itself shown.
     """
     sensor = sensor_of(surface.view)
     integrator = surface.integrator if isinstance(surface, TracedVolume) else path_integrator()
@@ -122,4 +124,4 @@ def traced_picture(surface: MeshSurface | TracedVolume, samples: int, background
         mitsuba().render(surface.scene, sensor=sensor, integrator=integrator, spp=samples, seed=seed)
     )
     colour, covered = picture[..., :3], picture[..., 3:4]
-    return np.asarray(colour + (1.0 - covered) * background, dtype=np.float32)
+    return np.asarray(colour + (1.0 - covered) * np.asarray(background, dtype=np.float32), dtype=np.float32)

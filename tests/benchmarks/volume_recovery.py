@@ -51,7 +51,7 @@ def truth_of(name: str, look: Look) -> tuple[Detail, Setup]:
         domain="solid", scale=(3.0, 8.0) if medium else (5.0, 16.0), finest=1.0 / (1.6 * 2 * (4 if medium else 2) / SIDE),
         roughness=(0.5, 1.8) if medium else (0.15, 1.0), anisotropy=(0.5, 2.0), mode="volume", medium=medium,
     )
-    assert MEDIUM_ROUGHNESS[0] <= space.roughness[0] and space.roughness[1] <= MEDIUM_ROUGHNESS[1] or not medium
+    assert not medium or (MEDIUM_ROUGHNESS[0] <= space.roughness[0] and space.roughness[1] <= MEDIUM_ROUGHNESS[1])
     # Within the middle of what is searched, so that a truth is not beside a bound.
     vector = 0.15 + 0.7 * draw.random(len(space.names(kind)))
     detail = space.decode(kind, vector)

@@ -64,7 +64,8 @@ def gallery(
 
     def under(lamp: Lamp) -> Picture:
         parts = components(surface, lamp, subsamples=3, shininess=(detail.reflectance.shininess,))
-        return parts.colour(detail.reflectance)
+        behind = np.asarray(result.background, dtype=np.float32)
+        return np.asarray(parts.colour(detail.reflectance) + (1.0 - parts.covered[..., None]) * behind, dtype=np.float32)
 
     on_progress("the fit and four other lights")
     fitted = under(target.lamp)
@@ -79,12 +80,12 @@ def gallery(
     scale = 1.0
     grazing = render(
         detail, "plane", light=lamp, scale=scale, size=side, rotation=(GRAZING_TILT, 0.0, 0.0), edge=EDGE,
-        camera=CameraSetup(kind="perspective"),
+        camera=CameraSetup(kind="perspective"), background=result.background,
     )
     on_progress("a sphere")
-    sphere = render(detail, "sphere", light=lamp, scale=scale, size=side, edge=EDGE)
+    sphere = render(detail, "sphere", light=lamp, scale=scale, size=side, edge=EDGE, background=result.background)
     on_progress(f"a {Path(mesh).stem}")
-    other = render(detail, mesh, light=lamp, scale=scale, size=side, edge=EDGE)
+    other = render(detail, mesh, light=lamp, scale=scale, size=side, edge=EDGE, background=result.background)
     return Gallery(
         photo=target.pixels, mask=target.mask, overlay=overlay(setup, target), fitted=fitted, lights=lights,
         grazing=grazing, sphere=sphere, mesh=other, mesh_name=Path(mesh).stem,

@@ -9,6 +9,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from voldetail.apply.volumes import Tell, place, quiet, solid_surface, traced_medium
 from voldetail.detail import Detail
 from voldetail.errors import InputError
 from voldetail.render import components, traced_picture
@@ -16,13 +17,15 @@ from voldetail.scene.environment import environment_emitter
 from voldetail.scene.lamp import Lamp, lamp_of
 from voldetail.scene.lights_text import direction_of
 from voldetail.scene.phong import phong_dict, principled_equivalent
-from voldetail.scene.proxy import Proxy, make_proxy
+from voldetail.scene.proxy import make_proxy
 from voldetail.scene.setup import CameraSetup, Light, ProxySetup
-from voldetail.scene.surface import MeshSurface
+from voldetail.scene.surface import MeshSurface, TracedMesh
 from voldetail.scene.traced import emitters_of
 from voldetail.scene.view import View, whole_view
+from voldetail.scene.volume import Volume
 
 Picture = NDArray[np.float32]
+Colour = tuple[float, float, float]
 Shading = Literal["phong", "principled"]
 KINDS: tuple[str, ...] = tuple(k for k in get_args(ProxySetup.model_fields["kind"].annotation) if k != "mesh")
 
@@ -37,7 +40,7 @@ def render(
     detail: Detail, mesh: str | Path = "sphere", *, light: Light | None = None, envmap: Path | None = None,
     scale: float = 1.0, size: tuple[int, int] = (640, 480), camera: CameraSetup | None = None,
     rotation: tuple[float, float, float] = (0.0, 0.0, 0.0), subsamples: int = 2, samples: int = 64,
-    shading: Shading = "phong", background: float = 0.0, edge: float = PIXELS_AN_EDGE,
+    shading: Shading = "phong", background: float | Colour = 0.0, edge: float = PIXELS_AN_EDGE, tell: Tell = quiet,
 ) -> Picture:
     """Return a linear picture (rows, columns, 3) of ``detail`` on ``mesh``: a kind of proxy or a mesh file.
 
@@ -45,34 +48,42 @@ def render(
     ``subsamples`` squared samples a pixel, the detail's ambient term being a uniform sky. Under an ``envmap``
     (equirectangular .exr or .hdr) it is path-traced with ``samples`` a pixel. ``scale`` makes the relief larger, cells
     and height alike; ``size`` is columns, rows; ``rotation`` turns the mesh about x, y, z in degrees; ``background`` is
-    the radiance where there is no surface; ``edge`` the length of the mesh's edges in pixels.
+    the radiance where there is no surface, one number or a colour; ``edge`` the length of the mesh's edges in pixels.
+
+    A volume needs a closed mesh; its solid surface is seen as any other, a medium is marched under a light with the shading
+    "phong" and path-traced with all its scattering else. ``tell`` then gets a sentence with the memory and time it takes.
     Raises InputError for a mesh or environment that cannot be used.
     """
     if envmap is not None and light is not None:
         raise InputError("A light and an environment map were both given: choose one.")
     view = _view(mesh, size, camera)
-    light = light or _default_light()
+    lamp = lamp_of(light or _default_light())
+    proxy, whole = _proxy(mesh, view, rotation)
     emitters: dict[str, Any] | None = None
     if envmap is not None:
         emitters = {"environment": environment_emitter(envmap)}
-    elif shading == "principled":
+    if detail.medium is not None:
+        # A medium is soft: finer cells than a volume's own would show nothing more.
+        volume = place(detail, proxy, view, scale=scale, whole_plane=whole, tell=tell)
+        if emitters is None and shading == "phong":
+            volume.update(detail)
+            return _lit(detail, volume, lamp, subsamples, background)
+        return traced_picture(traced_medium(detail, volume, lamp=lamp, emitters=emitters), samples, background)
+    if emitters is None and shading == "principled":
         # A sky as bright as the ambient term makes it on a matt surface.
         r = detail.reflectance
-        emitters = emitters_of(lamp_of(light), r.ambient / r.diffuse if r.diffuse > 1e-6 else 0.0)
-    surface = MeshSurface(
-        _proxy(detail, mesh, view, rotation, edge), view, scale=scale, bsdf=_bsdf(detail, shading), emitters=emitters,
-        one_sided_sky=str(mesh) == "plane",
-    )
-    surface.update(detail)
+        emitters = emitters_of(lamp, r.ambient / r.diffuse if r.diffuse > 1e-6 else 0.0)
+    surface = _surface(detail, mesh, view, proxy, whole, scale, edge, tell, _bsdf(detail, shading), emitters)
     if emitters is not None:
         return traced_picture(surface, samples, background)
-    return _lit(detail, surface, lamp_of(light), subsamples, background)
+    return _lit(detail, surface, lamp, subsamples, background)
 
 
 def relight(
     detail: Detail, mesh: str | Path = "plane", *, azimuths: Sequence[float], elevations: Sequence[float],
     scale: float = 1.0, size: tuple[int, int] = (480, 480), camera: CameraSetup | None = None,
-    rotation: tuple[float, float, float] = (0.0, 0.0, 0.0), subsamples: int = 2, background: float = 0.0,
+    rotation: tuple[float, float, float] = (0.0, 0.0, 0.0), subsamples: int = 2, background: float | Colour = 0.0,
+    tell: Tell = quiet,
 ) -> Iterator[tuple[float, float, Picture]]:
     """Yield (azimuth, elevation, picture) for every pair of angles in degrees; the geometry is made once.
 
@@ -82,10 +93,13 @@ def relight(
         if not 0 < elevation <= 90:
             raise InputError(f"The elevation {elevation:g} is out of range: it has to be over 0, at most 90 degrees.")
     view = _view(mesh, size, camera)
-    surface = MeshSurface(
-        _proxy(detail, mesh, view, rotation), view, scale=scale, one_sided_sky=str(mesh) == "plane"
-    )
-    surface.update(detail)
+    proxy, whole = _proxy(mesh, view, rotation)
+    surface: TracedMesh | Volume
+    if detail.medium is not None:
+        surface = place(detail, proxy, view, scale=scale, whole_plane=whole, tell=tell)
+        surface.update(detail)
+    else:
+        surface = _surface(detail, mesh, view, proxy, whole, scale, PIXELS_AN_EDGE, tell)
     for elevation in elevations:
         for azimuth in azimuths:
             lamp = Lamp(direction=direction_of(azimuth, elevation))
@@ -103,26 +117,41 @@ def _view(mesh: str | Path, size: tuple[int, int], camera: CameraSetup | None) -
     return whole_view(columns, rows, camera, FLAT_MARGIN if str(mesh) == "plane" else 1.15)
 
 
-def _proxy(
-    detail: Detail, mesh: str | Path, view: View, rotation: tuple[float, float, float], edge: float = PIXELS_AN_EDGE
-) -> Proxy:
+def _proxy(mesh: str | Path, view: View, rotation: tuple[float, float, float]) -> tuple[ProxySetup, bool]:
+    """Return the proxy and whether it is the plane that fills the picture and a little more, so that no edge is seen."""
     kind = str(mesh)
     if kind == "plane" and rotation == (0.0, 0.0, 0.0):
-        # Fills the picture and a little more, so that no edge is seen.
         wide = 2.1 * max(view.right, view.top)
-        setup = ProxySetup(kind="plane", size=(wide, wide, 0.0))
-    elif kind in KINDS:
-        setup = ProxySetup(kind=kind, rotation=rotation)  # type: ignore[arg-type]
-    else:
-        setup = ProxySetup(kind="mesh", mesh=Path(mesh), rotation=rotation)
-    return make_proxy(setup, edge * view.pixel, detail.noise.domain)
+        return ProxySetup(kind="plane", size=(wide, wide, 0.0)), True
+    if kind in KINDS:
+        return ProxySetup(kind=kind, rotation=rotation), False  # type: ignore[arg-type]
+    return ProxySetup(kind="mesh", mesh=Path(mesh), rotation=rotation), False
 
 
-def _lit(detail: Detail, surface: MeshSurface, lamp: Lamp, subsamples: int, background: float) -> Picture:
+def _surface(
+    detail: Detail, mesh: str | Path, view: View, proxy: ProxySetup, whole_plane: bool, scale: float, edge: float, tell: Tell,
+    bsdf: dict[str, Any] | None = None, emitters: dict[str, Any] | None = None,
+) -> TracedMesh:
+    """Return the surface of ``detail``: the displaced proxy, or that of solid matter."""
+    if detail.mode == "volume":
+        # Under perspective a plane's window is not all that is seen of it.
+        filling = whole_plane and not view.perspective
+        volume = place(detail, proxy, view, scale=scale, whole_plane=filling, edge=edge * view.pixel, tell=tell)
+        return solid_surface(detail, volume, bsdf=bsdf, emitters=emitters)
+    made = make_proxy(proxy, edge * view.pixel, detail.noise.domain)
+    surface = MeshSurface(made, view, scale=scale, bsdf=bsdf, emitters=emitters, one_sided_sky=str(mesh) == "plane")
+    surface.update(detail)
+    return surface
+
+
+def _lit(
+    detail: Detail, surface: TracedMesh | Volume, lamp: Lamp, subsamples: int, background: float | Colour
+) -> Picture:
     """Return the picture under one light and the detail's own sky, without noise."""
     parts = components(surface, lamp, subsamples=subsamples, shininess=(detail.reflectance.shininess,))
     picture = parts.colour(detail.reflectance)
-    return np.asarray(picture + (1.0 - parts.covered[..., None]) * background, dtype=np.float32)
+    behind = np.asarray(background, dtype=np.float32)
+    return np.asarray(picture + (1.0 - parts.covered[..., None]) * behind, dtype=np.float32)
 
 
 def _bsdf(detail: Detail, shading: Shading) -> dict[str, Any]:

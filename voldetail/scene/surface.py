@@ -1,4 +1,4 @@
-"""Any proxy as a Mitsuba scene of one displaced mesh: the general way to see a relief."""
+"""Any proxy as a Mitsuba scene of one mesh, displaced or the surface of a volume: the general way to see a relief."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ from typing import Any
 
 import drjit as dr
 import numpy as np
+from numpy.typing import NDArray
 
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
+from voldetail.scene.hypertexture import Hypertexture
+from voldetail.scene.isosurface import Isosurface
 from voldetail.scene.proxy import Proxy
 from voldetail.scene.rays import rays_of
 from voldetail.scene.relief import relief_and_albedo
@@ -22,59 +25,40 @@ GOLDEN_ANGLE = math.pi * (3.0 - math.sqrt(5.0))
 SHAPE = "detail"
 
 
-class MeshSurface:
-    """A proxy displaced along its normals, P' = P + A_d R(P) N_P (GD10 section 6), traced by Mitsuba.
-
-    The scene is loaded once; `update` moves the vertices, and Mitsuba makes the vertex normals anew.
-    """
+class TracedMesh:
+    """A mesh traced by Mitsuba, seen through ``view``, in a scene with its ``emitters``."""
 
     def __init__(
-        self, proxy: Proxy, view: View, *, scale: float = 1.0, one_sided_sky: bool = False,
-        bsdf: dict[str, Any] | None = None, emitters: dict[str, Any] | None = None,
+        self, view: View, *, one_sided_sky: bool = False, bsdf: dict[str, Any] | None = None,
+        emitters: dict[str, Any] | None = None,
     ) -> None:
         mi = mitsuba()
-        self.proxy, self.view, self.scale, self.one_sided_sky = proxy, view, scale, one_sided_sky
-        self._positions = mi.Point3f(np.ascontiguousarray(proxy.positions.T))
-        self._normals = mi.Vector3f(np.ascontiguousarray(proxy.normals.T))
-        self._domain = tuple(mi.Float(np.ascontiguousarray(proxy.domain[:, axis])) for axis in range(3))
+        self.view, self.one_sided_sky = view, one_sided_sky
         self._bsdf, self._emitters = bsdf, emitters or {}
-        self._parameters: Any = None
-        self._faces = tuple(mi.UInt32(np.ascontiguousarray(proxy.faces[:, corner])) for corner in range(3))
         self.albedo: Any = None
         self.towards_viewer: Any = mi.Vector3f(0.0, 0.0, 1.0)
 
-    def update(self, detail: Detail) -> None:
-        """Displace the mesh by the relief of ``detail``."""
+    def _load(self, positions: Any, faces: NDArray[np.integer[Any]], normals: Any = None) -> None:
+        """Load the scene of a mesh: positions (and normals, else Mitsuba's own) as flat arrays, faces (F, 3)."""
         mi = mitsuba()
-        relief, self.albedo = relief_and_albedo(detail, self._domain, self.scale)
-        height = relief * dr.opaque(mi.Float, detail.relief.amplitude * self.scale)
-        positions = dr.ravel(self._positions + height * self._normals)
-        # Left unevaluated, the noise would be computed again by each consumer of the vertices.
-        dr.eval(positions, self.albedo)
-        if self._parameters is None:
-            # Loaded with the first relief: a hierarchy over the bare proxy would be built for nothing.
-            self._load(positions)
-        else:
-            self._parameters[self._key] = positions
-            self._parameters.update()
-
-    def _load(self, positions: Any) -> None:
-        mi = mitsuba()
+        self._faces = tuple(mi.UInt32(np.ascontiguousarray(faces[:, corner])) for corner in range(3))
         properties = mi.Properties()
         if self._bsdf is not None:
             properties["bsdf"] = mi.load_dict(self._bsdf)
         # With vertex normals, though none are given: else Mitsuba makes none anew and every face is shaded flat.
-        count = len(self.proxy.positions), len(self.proxy.faces)
+        count = dr.width(positions) // 3, len(faces)
         mesh = mi.Mesh(SHAPE, *count, has_vertex_normals=True, props=properties)
         parameters = mi.traverse(mesh)
         parameters["vertex_positions"] = positions
-        parameters["faces"] = mi.UInt32(self.proxy.faces.ravel())
+        parameters["faces"] = mi.UInt32(np.ascontiguousarray(faces).ravel())
         parameters.update()
+        if normals is not None:
+            # After the positions, whose change makes Mitsuba compute its own.
+            parameters["vertex_normals"] = normals
+            parameters.update()
         self.scene = mi.load_dict(
             {"type": "scene", "embree_use_robust_intersections": True, SHAPE: mesh, **self._emitters}
         )
-        self._parameters = mi.traverse(self.scene)
-        self._key = next(key for key, _ in self._parameters if key.endswith("vertex_positions"))
 
     def rays(self, subsamples: int) -> Any:
         """Return the camera rays of a regular grid of samples, row by row."""
@@ -135,3 +119,54 @@ class MeshSurface:
         ray = mi.Ray3f(self._offset(points, self._geometric), direction)
         ray.maxt = dr.minimum(distance, 1e8)
         return ~self.scene.ray_test(ray)
+
+
+class MeshSurface(TracedMesh):
+    """A proxy displaced along its normals, P' = P + A_d R(P) N_P (GD10 section 6), traced by Mitsuba.
+
+    The scene is loaded once; `update` moves the vertices, and Mitsuba makes the vertex normals anew.
+    """
+
+    def __init__(
+        self, proxy: Proxy, view: View, *, scale: float = 1.0, one_sided_sky: bool = False,
+        bsdf: dict[str, Any] | None = None, emitters: dict[str, Any] | None = None,
+    ) -> None:
+        super().__init__(view, one_sided_sky=one_sided_sky, bsdf=bsdf, emitters=emitters)
+        mi = mitsuba()
+        self.proxy, self.scale = proxy, scale
+        self._positions = mi.Point3f(np.ascontiguousarray(proxy.positions.T))
+        self._normals = mi.Vector3f(np.ascontiguousarray(proxy.normals.T))
+        self._domain = tuple(mi.Float(np.ascontiguousarray(proxy.domain[:, axis])) for axis in range(3))
+        self._parameters: Any = None
+
+    def update(self, detail: Detail) -> None:
+        """Displace the mesh by the relief of ``detail``."""
+        mi = mitsuba()
+        relief, self.albedo = relief_and_albedo(detail, self._domain, self.scale)
+        height = relief * dr.opaque(mi.Float, detail.relief.amplitude * self.scale)
+        positions = dr.ravel(self._positions + height * self._normals)
+        # Left unevaluated, the noise would be computed again by each consumer of the vertices.
+        dr.eval(positions, self.albedo)
+        if self._parameters is None:
+            # Loaded with the first relief: a hierarchy over the bare proxy would be built for nothing.
+            self._load(positions, self.proxy.faces)
+            self._parameters = mi.traverse(self.scene)
+            self._key = next(key for key, _ in self._parameters if key.endswith("vertex_positions"))
+        else:
+            self._parameters[self._key] = positions
+            self._parameters.update()
+
+
+class VolumeSurface(TracedMesh):
+    """The surface of solid matter that a volumetric detail makes, traced by Mitsuba, with normals from its density."""
+
+    def __init__(
+        self, texture: Hypertexture, surface: Isosurface, view: View, *, one_sided_sky: bool = False,
+        bsdf: dict[str, Any] | None = None, emitters: dict[str, Any] | None = None,
+    ) -> None:
+        super().__init__(view, one_sided_sky=one_sided_sky, bsdf=bsdf, emitters=emitters)
+        mi = mitsuba()
+        points = tuple(mi.Float(np.ascontiguousarray(surface.vertices[:, axis])) for axis in range(3))
+        _, self.albedo = relief_and_albedo(texture.detail, texture.shell.own(points), texture.scale)
+        dr.eval(self.albedo)
+        self._load(mi.Float(surface.vertices.ravel()), surface.faces, mi.Float(surface.normals.ravel()))

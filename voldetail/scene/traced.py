@@ -34,18 +34,22 @@ def path_integrator() -> Any:
     return mitsuba().load_dict({"type": "path", "max_depth": BOUNCES, "hide_emitters": True})
 
 
-def emitters_of(lamp: Lamp, sky: float) -> dict[str, Any]:
-    """Return Mitsuba emitters for a lamp and a uniform sky of radiance ``sky``."""
-    emitters: dict[str, Any] = {"sky": {"type": "constant", "radiance": {"type": "rgb", "value": [sky] * 3}}}
+def emitters_of(lamp: Lamp, sky: float, tint: tuple[float, ...] = (1.0, 1.0, 1.0)) -> dict[str, Any]:
+    """Return Mitsuba emitters for a lamp and a uniform sky of radiance ``sky``, both of the colour ``tint``."""
+    emitters: dict[str, Any] = {"sky": {"type": "constant", "radiance": _rgb(sky, tint)}}
     if lamp.direction is not None:
         emitters["light"] = {
             "type": "directional", "direction": [-v for v in lamp.direction],
-            "irradiance": {"type": "rgb", "value": [math.pi * lamp.strength] * 3},
+            "irradiance": _rgb(math.pi * lamp.strength, tint),
         }
     else:
         assert lamp.position is not None
         power = math.pi * lamp.strength * lamp.position[2] ** 2
         emitters["light"] = {
-            "type": "point", "position": list(lamp.position), "intensity": {"type": "rgb", "value": [power] * 3}
+            "type": "point", "position": list(lamp.position), "intensity": _rgb(power, tint)
         }
     return emitters
+
+
+def _rgb(value: float, tint: tuple[float, ...]) -> dict[str, Any]:
+    return {"type": "rgb", "value": [value * c for c in tint]}

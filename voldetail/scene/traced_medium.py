@@ -35,12 +35,13 @@ class TracedVolume:
 
     albedo: share of the light that scatters where it is stopped, 0 to 1; a colour of three of them is tinted. sky:
     radiance of the uniform sky, shown behind the medium if ``show_sky``. scatterings: the most for one path; 1 for what
-    the marcher sees.
+    the marcher sees. tint: colour of the lights; ``emitters`` of one's own take their place.
     """
 
     def __init__(
         self, grid: DensityGrid, medium: Medium, view: View, lamp: Lamp | None, *, sky: float = 0.0,
         albedo: float | tuple[float, float, float] = ALBEDO, scatterings: int = SCATTERINGS, show_sky: bool = False,
+        tint: tuple[float, ...] = (1.0, 1.0, 1.0), emitters: dict[str, Any] | None = None,
     ) -> None:  # fmt: skip
         check(grid)
         colour = np.broadcast_to(np.asarray(albedo, dtype=float), (3,))
@@ -53,7 +54,7 @@ class TracedVolume:
             {"type": "volpath", "max_depth": scatterings + 1, "rr_depth": 16, "hide_emitters": not show_sky}
         )
         self.scene = mi.load_dict(
-            {"type": "scene", "box": box_of(grid, medium, colour.tolist()), **_lights(lamp, sky)}
+            {"type": "scene", "box": box_of(grid, medium, colour.tolist()), **(emitters or _lights(lamp, sky, tint))}
         )
 
 
@@ -77,8 +78,8 @@ def box_of(grid: DensityGrid, medium: Medium, albedo: list[float]) -> dict[str, 
     }
 
 
-def _lights(lamp: Lamp | None, sky: float) -> dict[str, Any]:
-    lights = emitters_of(lamp or Lamp(direction=(0.0, 0.0, 1.0), strength=0.0), sky)
+def _lights(lamp: Lamp | None, sky: float, tint: tuple[float, ...]) -> dict[str, Any]:
+    lights = emitters_of(lamp or Lamp(direction=(0.0, 0.0, 1.0), strength=0.0), sky, tint)
     if lamp is None:
         del lights["light"]
     # A sky that gives nothing would still take half of the light samples.

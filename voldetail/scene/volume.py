@@ -16,7 +16,7 @@ from voldetail.scene.marched import MarchedVolume
 from voldetail.scene.medium import Medium
 from voldetail.scene.setup import ProxySetup
 from voldetail.scene.shell import Shell, make_shell
-from voldetail.scene.shell_plan import DEFAULT_BUDGET, ShellPlan, plan_shell
+from voldetail.scene.shell_plan import DEFAULT_BUDGET, LEAST_CELLS, ShellPlan, plan_shell
 from voldetail.scene.view import View
 
 SOLID_CELLS = 3.0
@@ -68,11 +68,16 @@ class Volume(MarchedVolume):
 
     def texture(self, detail: Detail) -> Hypertexture:
         """Return the density of ``detail``, with the plan of its grid."""
-        medium = detail.medium
-        amplitude = detail.relief.amplitude * self.scale
-        thickness = SOLID_CELLS * self.edge if medium is None else max(medium.thickness * self.scale, 2.0 * self.edge)
-        exponent = 1.0 if medium is None else medium.exponent
-        return Hypertexture(self._shell(thickness, amplitude, medium is None), detail, exponent, self.scale)
+        exponent = 1.0 if detail.medium is None else detail.medium.exponent
+        return Hypertexture(self._shell(*self.lengths(detail), detail.medium is None), detail, exponent, self.scale)
+
+    def lengths(self, detail: Detail) -> tuple[float, float]:
+        """Return the thickness of the shell and the amplitude of ``detail`` here, in scene units."""
+        medium, amplitude = detail.medium, detail.relief.amplitude * self.scale
+        if medium is None:
+            return SOLID_CELLS * self.edge, amplitude
+        # A shell that is thinner than the cells can show is as thin as they can.
+        return max(medium.thickness * self.scale, LEAST_CELLS * self.edge), amplitude
 
     def _shell(self, thickness: float, amplitude: float, solid: bool) -> Shell:
         wanted, kept = (thickness, amplitude), self._kept
@@ -98,7 +103,9 @@ class Volume(MarchedVolume):
     def _placed(self, margin: float, solid: bool) -> ProxySetup:
         """Return the proxy; the plane that fills the view as large as that and ``margin``, as a sheet where not solid."""
         if not self.whole_plane:
-            return self.proxy
+            if solid or self.proxy.kind != "plane":
+                return self.proxy
+            return self.proxy.model_copy(update={"kind": "box", "size": (*self.proxy.extent[:2], SHEET)})
         view, (x, y, _) = self.view, self.proxy.position
         furthest = max(abs(view.left - x), abs(view.right - x)), max(abs(view.bottom - y), abs(view.top - y))
         reach = [2.0 * (far + margin) for far in furthest]
