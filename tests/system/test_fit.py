@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tests.system.scenes import detail, setup
+from voldetail.apply.gallery import overlay
 from voldetail.detail import Detail
 from voldetail.detail.record import ReliefParameters
 from voldetail.errors import InputError
@@ -243,6 +244,19 @@ def test_a_mask_on_a_round_proxy(tmp_path: Path) -> None:
     assert result.distance < 100
     assert result.detail.provenance is not None
     assert result.detail.provenance.mask_sha256 is not None
+
+
+@pytest.mark.parametrize("kind", ["sphere", "cylinder"])
+@pytest.mark.parametrize("mode", ["displacement", "volume"])
+def test_the_report_draws_the_outline_of_a_round_proxy(kind: str, mode: str) -> None:
+    scene = wanted(proxy=ProxySetup(kind=kind, size=(1.0, 1.0, 1.0)), mode=mode)  # type: ignore[arg-type]
+    target = make_target(scene, PHOTO)
+    drawn = overlay(scene, target)
+    orange = (np.abs(drawn - np.array([1.0, 0.35, 0.02])) < 0.01).all(axis=2)
+    rows, columns = np.nonzero(orange)
+    # Half of the photo, in its middle, a pixel of outline to each side.
+    assert (rows.min(), rows.max() + 1) == pytest.approx((drawn.shape[0] / 4, drawn.shape[0] * 3 / 4), abs=3)
+    assert (columns.min(), columns.max() + 1) == pytest.approx((drawn.shape[1] / 4, drawn.shape[1] * 3 / 4), abs=3)
 
 
 @pytest.mark.parametrize("proxy", ["plane", "sphere"])

@@ -13,10 +13,11 @@ from voldetail.detail import Detail
 from voldetail.metric import describe, distance
 from voldetail.render import Components, components
 from voldetail.scene import heightfield, surface
-from voldetail.scene.build import build
+from voldetail.scene.build import SHADOW_REACH, build
 from voldetail.scene.heightfield import HeightField
 from voldetail.scene.lamp import Lamp
 from voldetail.scene.lights_text import direction_of
+from voldetail.scene.proxy import make_proxy, seen_part
 from voldetail.scene.setup import CameraSetup, ProxySetup
 from voldetail.scene.surface import MeshSurface
 from voldetail.scene.view import View
@@ -273,3 +274,21 @@ def test_a_ramp_faces_away_from_where_it_rises() -> None:
     light = direction_of(180, 60)
     wanted = (-0.5 * light[0] + light[2]) / math.hypot(0.5, 1.0)
     assert components(ramp, Lamp(direction=light)).diffuse == pytest.approx(wanted, abs=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["sphere", "cylinder"])
+def test_the_part_of_a_proxy_that_is_seen_looks_like_the_whole(kind: str) -> None:
+    view = View(-0.1, 0.5, 0.1, 0.7, 64, 64)
+    whole = make_proxy(ProxySetup(kind=kind), view.pixel)  # type: ignore[arg-type]
+    part = seen_part(whole, view, SHADOW_REACH, convex=True)
+    assert len(part.faces) < 0.4 * len(whole.faces)
+    lamp, pictures = Lamp(direction=(0.6, 0.5, 0.62)), []
+    for proxy in (whole, part):
+        surface = MeshSurface(proxy, view)
+        surface.update(detail(noise__scale=6.0, relief__amplitude=0.06))
+        seen = components(surface, lamp, shininess=SHININESS)
+        pictures.append(np.stack([seen.diffuse, seen.covered, seen.specular[0], seen.ambient]))
+    assert pictures[1][:3] == pytest.approx(pictures[0][:3], abs=1e-3)
+    # Of the sky, a few of each place's rays that passed behind what is seen met the rest.
+    assert pictures[1][3] == pytest.approx(pictures[0][3], abs=0.05)
+    assert pictures[1][3].mean() == pytest.approx(pictures[0][3].mean(), abs=0.003)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation, binary_erosion
 
 from voldetail.apply.onmesh import render
+from voldetail.detail import Detail, with_values
 from voldetail.image import resize
 from voldetail.render import components
 from voldetail.scene.build import build, faces_camera
@@ -123,8 +124,10 @@ def _outline(
     """Return (edge of the proxy in the photo, where it is) as masks of ``size``; a plane that fills it has no edge."""
     if faces_camera(setup):
         return np.zeros(size, dtype=bool), np.ones(size, dtype=bool)
-    small = setup.model_copy(update={"photo": PhotoSetup(path=setup.photo.path, resolution=max(size))})
+    photo = PhotoSetup(path=setup.photo.path, resolution=max(size))
+    small = setup.model_copy(update={"photo": photo, "mode": "displacement", "look": "surface"})
     surface = build(small, shape, None)
+    surface.update(with_values(Detail(), {"relief.amplitude": 0.0, "noise.domain": setup.domain}))
     parts = components(surface, Lamp((0.0, 0.0, 1.0)), subsamples=1, shininess=())
     inside = parts.covered[: size[0], : size[1]] > 0.5
     return binary_dilation(inside, iterations=1) & ~binary_erosion(inside, iterations=1), inside

@@ -9,7 +9,7 @@ import numpy as np
 
 from voldetail.detail import Detail
 from voldetail.scene.heightfield import HeightField
-from voldetail.scene.proxy import Proxy, make_proxy
+from voldetail.scene.proxy import Proxy, make_proxy, seen_part
 from voldetail.scene.setup import ProxySetup, Setup
 from voldetail.scene.surface import MeshSurface
 from voldetail.scene.view import View, Zone, view_of
@@ -17,6 +17,9 @@ from voldetail.scene.volume import Volume, fitting_edge
 
 FLAT_MARGIN = 16
 """Pixels by which the mesh of a flat proxy is larger than the window, so that relief outside casts its shadows in."""
+
+SHADOW_REACH = 0.1
+"""Scene units beyond the window from which relief on other shapes may cast its shadows in."""
 
 
 class Surface(Protocol):
@@ -44,9 +47,11 @@ def build(
         if fast:
             return HeightField(view, setup.proxy.position)
         return MeshSurface(_covering(view, setup), view, one_sided_sky=True)
-    return MeshSurface(
-        make_proxy(setup.proxy, view.pixel, setup.domain), view, one_sided_sky=setup.proxy.kind == "plane"
-    )
+    proxy = make_proxy(setup.proxy, view.pixel, setup.domain)
+    if not view.perspective:
+        margin = max(FLAT_MARGIN * view.pixel, SHADOW_REACH)
+        proxy = seen_part(proxy, view, margin, convex=setup.proxy.kind not in ("plane", "mesh"))
+    return MeshSurface(proxy, view, one_sided_sky=setup.proxy.kind == "plane")
 
 
 def edge_of(setup: Setup, view: View) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import trimesh
@@ -12,6 +12,10 @@ from numpy.typing import NDArray
 from voldetail.scene.meshes import load_mesh, normalise
 from voldetail.scene.setup import ProxySetup
 from voldetail.scene.tessellate import MAXIMUM_FACES, split_long_edges
+from voldetail.scene.view import View
+
+AWAY = -0.7
+"""z of a normal below which a face of a convex shape faces away, whatever relief (slopes up to 45 degrees) is on it."""
 
 
 @dataclass(frozen=True)
@@ -129,3 +133,23 @@ def rotation_matrix(degrees: tuple[float, float, float]) -> NDArray[np.float64]:
     about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
     about_z = np.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]])
     return np.asarray(about_z @ about_y @ about_x)
+
+
+def seen_part(proxy: Proxy, view: View, margin: float, *, convex: bool) -> Proxy:
+    """Return ``proxy`` without the faces that a parallel ``view`` cannot see: more than ``margin`` beside its window.
+
+    Of a ``convex`` shape those that face away go too. What is left shows the same and casts the same shadows, but for
+    those that come from further away than the margin.
+    """
+    x, y = proxy.positions[:, 0], proxy.positions[:, 1]
+    near = (x >= view.left - margin) & (x <= view.right + margin) & (y >= view.bottom - margin) & (y <= view.top + margin)
+    if convex:
+        near &= proxy.normals[:, 2] > AWAY
+    faces = proxy.faces[near[proxy.faces].any(axis=1)]
+    if len(faces) in (0, len(proxy.faces)):
+        return proxy
+    used, compact = np.unique(faces, return_inverse=True)
+    return replace(
+        proxy, positions=proxy.positions[used], normals=proxy.normals[used], domain=proxy.domain[used],
+        faces=compact.reshape(-1, 3).astype(np.uint32),
+    )
