@@ -30,7 +30,10 @@ Shading = Literal["phong", "principled"]
 KINDS: tuple[str, ...] = tuple(k for k in get_args(ProxySetup.model_fields["kind"].annotation) if k != "mesh")
 
 FLAT_MARGIN = 1.0
-"""A plane is shown filling the picture; other shapes get the margin of `whole_view`."""
+"""A plane is shown filling the picture."""
+
+MARGIN, SPARE = 1.15, 1.05
+"""Half of the picture's shorter side about a shape that is 2 across, and the factor about a volume that rises from it."""
 
 PIXELS_AN_EDGE = 1.0
 """Length of the mesh's edges in pixels: about one, so that relief and shading lose nothing that a picture can show."""
@@ -56,7 +59,7 @@ def render(
     """
     if envmap is not None and light is not None:
         raise InputError("A light and an environment map were both given: choose one.")
-    view = _view(mesh, size, camera)
+    view = _view(detail, scale, mesh, size, camera)
     lamp = lamp_of(light or _default_light())
     proxy, whole = _proxy(mesh, view, rotation)
     emitters: dict[str, Any] | None = None
@@ -92,7 +95,7 @@ def relight(
     for elevation in elevations:
         if not 0 < elevation <= 90:
             raise InputError(f"The elevation {elevation:g} is out of range: it has to be over 0, at most 90 degrees.")
-    view = _view(mesh, size, camera)
+    view = _view(detail, scale, mesh, size, camera)
     proxy, whole = _proxy(mesh, view, rotation)
     surface: TracedMesh | Volume
     if detail.medium is not None:
@@ -110,11 +113,18 @@ def _default_light() -> Light:
     return Light(direction=direction_of(135.0, 45.0))
 
 
-def _view(mesh: str | Path, size: tuple[int, int], camera: CameraSetup | None) -> View:
+def _view(detail: Detail, scale: float, mesh: str | Path, size: tuple[int, int], camera: CameraSetup | None) -> View:
     columns, rows = size
     if not (16 <= columns <= 8192 and 16 <= rows <= 8192):
         raise InputError(f"The size {columns}x{rows} is out of range: each side has to be 16 to 8192 pixels.")
-    return whole_view(columns, rows, camera, FLAT_MARGIN if str(mesh) == "plane" else 1.15)
+    if str(mesh) == "plane":
+        return whole_view(columns, rows, camera, FLAT_MARGIN)
+    rises = 0.0
+    if detail.mode == "volume":
+        # What is seen of a cloud begins about where its density is half.
+        soft = 0.0 if detail.medium is None else detail.medium.thickness / 4
+        rises = (detail.relief.amplitude + soft) * scale
+    return whole_view(columns, rows, camera, max(MARGIN, (1.0 + rises) * SPARE))
 
 
 def _proxy(mesh: str | Path, view: View, rotation: tuple[float, float, float]) -> tuple[ProxySetup, bool]:

@@ -47,6 +47,20 @@ def fit(
             help="Degrees across the photo's longest side; makes it perspective.", rich_help_panel=SCENE
         ),
     ] = None,
+    mode: Annotated[
+        _Text,
+        typer.Option(
+            help="displacement (relief on a surface) or volume (tufts, overhangs, clouds; a closed shape).",
+            rich_help_panel=SCENE,
+        ),
+    ] = None,
+    look: Annotated[
+        _Text,
+        typer.Option(
+            help="Of a volume: surface (solid matter) or medium (light passes through, as in clouds).",
+            rich_help_panel=SCENE,
+        ),
+    ] = None,
     mask: Annotated[
         _Text, typer.Option(help="A picture of the photo's size: white is used.", rich_help_panel=WHERE)
     ] = None,
@@ -115,7 +129,7 @@ def fit(
         "--light": light, "--proxy": proxy, "--rotation": rotation, "--camera": camera, "--fov": fov,
         "--mask": mask, "--zone": zone, "--resolution": resolution, "--output": folder, "--domain": domain,
         "--amplitude": amplitude, "--specular": specular, "--solver": solver, "--metric": metric,
-        "--seed": seed, "--evaluations": evaluations, "--time-limit": time_limit,
+        "--mode": mode, "--look": look, "--seed": seed, "--evaluations": evaluations, "--time-limit": time_limit,
     }  # fmt: skip
     setup = read_setup(photo, options, override or [])
     place = FitFolder(output_folder(setup), setup)
@@ -178,7 +192,7 @@ def _report(folder: Path, result: FitResult, on_step: Callable[[str], None]) -> 
 def _tell(folder: Path, result: FitResult) -> None:
     """Say what was made and how good it is."""
     from voldetail.report import PAGE_NAME, SHEET_NAME, verdict
-    from voldetail.report.facts import amplitude_words, duration
+    from voldetail.report.facts import amplitude_words, duration, medium_words
 
     console = output()
     if result.interrupted:
@@ -186,7 +200,8 @@ def _tell(folder: Path, result: FitResult) -> None:
     # On a terminal a sentence is wrapped between words; in a file it stays one line.
     wrap = not console.is_terminal
     console.print(verdict(result.distance, result.detail.noise_floor).sentence, markup=False, soft_wrap=wrap)
-    console.print(f"Amplitude {amplitude_words(result)}.", markup=False, soft_wrap=wrap)
+    told = f"Of the medium: {medium_words(result)}" if result.told else f"Amplitude {amplitude_words(result)}"
+    console.print(f"{told}.", markup=False, soft_wrap=wrap)
     spent = f"{result.evaluations} pictures compared in {duration(result.seconds)}"
     console.print(f"{spent}; {result.status}.", markup=False, soft_wrap=wrap)
     for name, what in (

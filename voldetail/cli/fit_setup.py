@@ -24,6 +24,7 @@ KEYS = {
     "--solver": "fit.solver", "--metric": "fit.metric", "--seed": "seed", "--evaluations": "fit.evaluations",
     "--time-limit": "fit.time_limit", "--domain": "domain", "--camera": "camera.kind",
     "--fov": "camera.field_of_view", "--specular": "fit.specular", "--output": "output",
+    "--mode": "mode", "--look": "look",
 }  # fmt: skip
 
 
@@ -70,6 +71,8 @@ def _overrides(option: str, value: Any, options: Mapping[str, Any]) -> list[str]
         return _proxy(value)
     if option == "--rotation":
         return [f"proxy.rotation={numbers(value, 3, option, 'X,Y,Z in degrees')}"]
+    if option == "--look" and value == "medium" and options.get("--mode") is None:
+        return ['look="medium"', 'mode="volume"']  # nothing else has a medium
     made = [f"{KEYS[option]}={json.dumps(value, ensure_ascii=False)}"]
     if option == "--fov" and options.get("--camera") is None:
         made.append('camera.kind="perspective"')  # an orthographic camera has no angle

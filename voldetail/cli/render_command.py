@@ -16,6 +16,7 @@ from voldetail.errors import InputError
 from voldetail.files import readable
 
 if TYPE_CHECKING:
+    from voldetail.detail import Detail
     from voldetail.scene.setup import CameraSetup
 
 DETAIL_HELP = "A detail file, as fit makes it."
@@ -25,6 +26,7 @@ ENVIRONMENT_BYTES = 2**30
 ENVIRONMENT_SUFFIXES = (".exr", ".hdr")
 ANIMATION_SECONDS = 0.12  # a frame
 MOST_FRAMES = 720
+BRIGHTEST = 1e3
 
 _Scale = Annotated[
     float, typer.Option(min=1e-3, max=1e3, help="How many times larger the relief is than in the photo.")
@@ -37,7 +39,10 @@ _Fov = Annotated[
     typer.Option(min=1, max=150, help="Degrees across; a perspective camera. Default: orthographic."),
 ]
 _Background = Annotated[
-    float, typer.Option(min=0, max=1e3, help="Light where there is no surface: 0 is black.")
+    str,
+    typer.Option(
+        help="Light where there is nothing: 0 is black; a number, R,G,B (linear), or photo: what the fit found there."
+    ),
 ]
 _Subsamples = Annotated[int, typer.Option(min=1, max=8, help="Samples a pixel, each way, under a light.")]
 _Detail = Annotated[Path, typer.Argument(help=DETAIL_HELP)]
@@ -65,7 +70,7 @@ def render(
         int, typer.Option(min=1, max=65536, help="Samples a pixel, for --envmap and principled.")
     ] = 64,
     subsamples: _Subsamples = 2,
-    background: _Background = 0.0,
+    background: _Background = "0",
 ) -> None:
     """Render a detail on a shape, under a light or an environment map."""
     from voldetail.apply import render as picture_of
@@ -86,11 +91,12 @@ def render(
         "light": lit,
         "envmap": _environment(envmap) if envmap is not None else None,
         "scale": scale, "size": size(pixels), "camera": _camera(fov), "rotation": _rotation(rotation),
-        "subsamples": subsamples, "samples": samples, "shading": shading, "background": background,
+        "subsamples": subsamples, "samples": samples, "shading": shading, "background": _background(background, record),
     }  # fmt: skip
     shape = _shape(shape)
     use_threads(context.obj)
     with remarks().status(f"rendering {shape}"):
+        options["tell"] = _tell
         picture = picture_of(record, shape, **options)
     save_image(out, picture)
     output().print(f"{out}  {picture.shape[1]} x {picture.shape[0]} pixels", markup=False, soft_wrap=True)
@@ -113,7 +119,7 @@ def relight(
     rotation: _Rotation = None,
     fov: _Fov = None,
     subsamples: _Subsamples = 2,
-    background: _Background = 0.0,
+    background: _Background = "0",
     animation: Annotated[str, typer.Option(help="gif, png (animated, more colours) or none.")] = "gif",
     force: Annotated[bool, typer.Option("--force", help="Replace the frames in the folder.")] = False,
 ) -> None:
@@ -133,10 +139,11 @@ def relight(
     record = load_detail(detail)
     earlier = _free_folder(folder, force)
     wide, turned, camera, shape = size(pixels), _rotation(rotation), _camera(fov), _shape(shape)
+    behind = _background(background, record)
     use_threads(context.obj)
     frames = frames_of(
         record, shape, azimuths=azimuths, elevations=elevations, scale=scale, size=wide, camera=camera,
-        rotation=turned, subsamples=subsamples, background=background,
+        rotation=turned, subsamples=subsamples, background=behind, tell=_tell,
     )  # fmt: skip
     _write_frames(folder, earlier, frames, count, animation, record.name)
     output().print(
@@ -199,6 +206,25 @@ def _rotation(text: str | None) -> tuple[float, float, float]:
         return (0.0, 0.0, 0.0)
     x, y, z = numbers(text, 3, "--rotation", "X,Y,Z in degrees")
     return (x, y, z)
+
+
+def _background(text: str, record: Detail) -> tuple[float, float, float]:
+    """The colour behind: from a number, R,G,B, or "photo"."""
+    if text == "photo":
+        found = record.provenance.settings.get("background") if record.provenance else None
+        if not (isinstance(found, list) and len(found) == 3 and all(isinstance(v, int | float) for v in found)):
+            raise InputError("--background photo is for media that were fitted to one, and this detail names none: give R,G,B.")
+        r, g, b = (float(v) for v in found)  # type: ignore[arg-type]
+        return r, g, b
+    values = numbers(text, 3 if "," in text else 1, "--background", "one number, R,G,B or photo")
+    if not all(0 <= v <= BRIGHTEST for v in values):
+        raise InputError(f"--background {text} is out of range; each number has to be 0 to {BRIGHTEST:g}.")
+    return values[0], values[-2 if len(values) > 1 else 0], values[-1]
+
+
+def _tell(sentence: str) -> None:
+    """Say what a volume will take before it is made."""
+    remarks().print(sentence, markup=False, soft_wrap=True)
 
 
 def _shape(text: str) -> str:

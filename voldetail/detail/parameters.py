@@ -132,7 +132,7 @@ PARAMETERS: tuple[Parameter, ...] = (
               "How much light full density stops: of a beam, all but a 1/e-th part in 1/extinction scene units."),
     Parameter("medium.asymmetry", "Asymmetry", "g", "", -0.9, 0.95, 0.0, "linear",
               "The mean cosine of scattering: 0 is even, towards 1 light goes on forwards as in clouds."),
-    Parameter("medium.albedo", "Single-scattering albedo", "omega", "", 0, 1, 0.99, "linear",
+    Parameter("medium.albedo", "Scattering albedo", "omega", "", 0, 1, 0.99, "linear",
               "The share of the stopped light that is scattered and not swallowed: near 1 for clouds, low for soot."),
 )
 # fmt: on

@@ -12,16 +12,21 @@ _GLOSSY = (
     0.05  # Ks above which a highlight is worth mentioning: 5 % of the beam, about a dielectric's reflectance
 )
 _ANGULAR = 0.5  # facets above which the flat faces are what one sees
+MEDIUM_HAS_NONE = ("specular", "shininess", "height_albedo", "cell_albedo", "speckle", "speckle_scale")
+"""Numbers of the reflectance that a medium has no use for."""
+
 _STRETCHED = 1.1  # a ratio below this cannot be told from round cells by eye
 
 
 def describe_in_words(detail: Detail) -> list[tuple[str, str, str, str]]:
     """Label, value, unit and sentence of each parameter, all as text, in the order of their declaration.
 
-    Angles, radians in the file, are given in degrees.
+    Angles, radians in the file, are given in degrees. What a medium cannot have is left out.
     """
     values = values_of(detail)
-    return [(p.label, *_value(p, values[p.key]), p.sentence) for p in PARAMETERS if p.key in values]
+    unused = MEDIUM_HAS_NONE if detail.medium is not None else ()
+    shown = [p for p in PARAMETERS if p.key in values and p.key.removeprefix("reflectance.") not in unused]
+    return [(p.label, *_value(p, values[p.key]), p.sentence) for p in shown]
 
 
 def summary(detail: Detail) -> str:

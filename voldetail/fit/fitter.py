@@ -23,6 +23,7 @@ from voldetail.fit.reflectance import colours
 from voldetail.fit.session import Progress, Session, State, Stopped, derived_seed
 from voldetail.fit.space import Space
 from voldetail.fit.target import Target, load_photo_of, make_target
+from voldetail.fit.told import Told, told_of_medium
 from voldetail.image import Photo, luminance
 from voldetail.metric import METRICS
 from voldetail.metric.anisotropy import anisotropy
@@ -36,12 +37,15 @@ SMALLEST_CELL = 3.0
 LARGEST_CELL = 0.6
 """Share of the zone that a cell may span: larger ones leave too few to have statistics."""
 
+DEEPEST = 0.2
+"""Share of the zone that a volume's relief may rise: what is deeper is seldom meant, and its grid takes minutes."""
+
 FINEST_OCTAVE = 1.6
 """Pixels a cell of the finest octave must span, near the sampling limit of the mesh's one vertex a pixel."""
 
 
 INTERVAL_SEEDS = 2
-"""Noise seeds for the interval of the amplitude."""
+"""Noise seeds for the intervals of numbers."""
 
 FINALISTS = 3
 DETAIL_SEEDS = 4
@@ -54,6 +58,7 @@ class FitResult:
 
     setup: the one that was fitted, with the direction found where its light was "auto", and then light_guess.
     heights: the amplitudes that fit about as well; None where the user gave the amplitude or stopped the fit.
+    told: for a medium, what the photo tells of each of its numbers; empty for other details, and where the fit was stopped.
     picture (H, W): its luminance. covered (H, W): the share of each pixel that is filled; background: what shows through.
     """
 
@@ -71,6 +76,7 @@ class FitResult:
     interrupted: bool
     light_guess: LightGuess | None = None
     heights: AmplitudeInterval | None = None
+    told: tuple[Told, ...] = ()
 
     @property
     def coloured(self) -> NDArray[np.float32]:
@@ -120,13 +126,14 @@ def fit(
         raise VoldetailError("The fit was stopped before a first detail was found: let it run a little longer.")
     final = _finish(session)
     heights = None if interrupted else _heights(setup, session, final)
+    told = () if interrupted else _told(session, final)
     final, background = _coloured(target, final)
     return FitResult(
-        detail=signed(final, setup, target, session, Findings(status, light_guess, heights, background)),
+        detail=signed(final, setup, target, session, Findings(status, light_guess, heights, told, background)),
         setup=setup, target=target,
         picture=final.picture, covered=final.covered, background=background, distance=final.distance,
         evaluations=session.evaluations, seconds=session.seconds, status=status, trace=tuple(session.trace),
-        interrupted=interrupted, light_guess=light_guess, heights=heights,
+        interrupted=interrupted, light_guess=light_guess, heights=heights, told=told,
     )
 
 
@@ -139,7 +146,8 @@ def space_of(setup: Setup, target: Target) -> Space:
     lowest, highest = bounds("noise.scale")
     # What shows no finer than a pixel, or than a cell of the grid that a volume is baked to.
     grain = max(view.pixel, edge_of(setup, view)) if setup.mode == "volume" else view.pixel
-    coarsest = max(1.0 / (LARGEST_CELL * max(view.rows, view.columns) * view.pixel), lowest)
+    shown = max(view.rows, view.columns) * view.pixel
+    coarsest = max(1.0 / (LARGEST_CELL * shown), lowest)
     finest = min(1.0 / (SMALLEST_CELL * grain), highest)
     if not coarsest < finest:
         raise InputError(
@@ -150,6 +158,7 @@ def space_of(setup: Setup, target: Target) -> Space:
         domain=setup.domain, scale=(coarsest, finest), finest=1.0 / (FINEST_OCTAVE * grain),
         amplitude=setup.amplitude, plain=setup.fit.solver == "paper", mode=setup.mode, medium=setup.medium,
         roughness=MEDIUM_ROUGHNESS if setup.medium else SOLID_ROUGHNESS if setup.mode == "volume" else ROUGHNESS,
+        highest=min(bounds("relief.amplitude")[1], shown * DEEPEST if setup.mode == "volume" else math.inf),
     )
 
 
@@ -225,3 +234,13 @@ def _heights(setup: Setup, session: Session, final: Evaluation) -> AmplitudeInte
         return amplitude_interval(session.fine, final.detail, seeds)
     except KeyboardInterrupt:
         return None
+
+
+def _told(session: Session, final: Evaluation) -> tuple[Told, ...]:
+    """Return what the photo tells of a medium, at the coarse objective's resolution: there are a hundred pictures to make."""
+    if final.detail.medium is None:
+        return ()
+    try:
+        return told_of_medium(session.coarse, final.detail, [session.unseen_seed(index) for index in range(INTERVAL_SEEDS)])
+    except KeyboardInterrupt:
+        return ()

@@ -104,23 +104,28 @@ def _scores(
     return np.array([[e.score for e in objective.evaluate_all(higher, seed)] for seed in seeds]).T
 
 
-def _ends(amplitudes: NDArray[np.float64], distances: NDArray[np.float64], best: float = math.inf) -> tuple[float, float]:
-    """Return the amplitudes about the lowest of ``distances`` between which all are near, by straight lines in the log.
+def near(places: NDArray[np.float64], distances: NDArray[np.float64], best: float = math.inf) -> tuple[float, float]:
+    """Return the places about the lowest of ``distances`` between which all are near it, by straight lines between them.
 
-    ``best`` is the lowest distance under another light; a light that is nowhere near that gives an empty interval.
+    ``best`` is the lowest distance elsewhere (under another light); what is nowhere near that gives an empty interval.
     """
-    logs, lowest = np.log(amplitudes), int(np.argmin(distances))
+    lowest = int(np.argmin(distances))
     allowed = TOLERANCE * min(best, float(distances[lowest]))
     if distances[lowest] > allowed:
         return math.inf, -math.inf
 
     def crossing(step: int) -> float:
         at = lowest
-        while 0 <= at + step < len(logs) and distances[at + step] <= allowed:
+        while 0 <= at + step < len(places) and distances[at + step] <= allowed:
             at += step
-        if not 0 <= at + step < len(logs):
-            return float(logs[at])
+        if not 0 <= at + step < len(places):
+            return float(places[at])
         share = (allowed - distances[at]) / (distances[at + step] - distances[at])
-        return float(logs[at] + share * (logs[at + step] - logs[at]))
+        return float(places[at] + share * (places[at + step] - places[at]))
 
-    return math.exp(crossing(-1)), math.exp(crossing(1))
+    return crossing(-1), crossing(1)
+
+
+def _ends(amplitudes: NDArray[np.float64], distances: NDArray[np.float64], best: float = math.inf) -> tuple[float, float]:
+    low, high = near(np.log(amplitudes), distances, best)
+    return (math.exp(low), math.exp(high)) if low <= high else (low, high)

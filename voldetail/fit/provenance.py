@@ -17,6 +17,7 @@ from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.objective import Evaluation
 from voldetail.fit.session import Session, derived_seed
 from voldetail.fit.target import Target
+from voldetail.fit.told import Told
 from voldetail.metric import describe, distance
 from voldetail.scene.lights_text import light_text
 from voldetail.scene.setup import Setup
@@ -29,6 +30,7 @@ class Findings:
     status: str
     light_guess: LightGuess | None
     heights: AmplitudeInterval | None
+    told: tuple[Told, ...]
     background: tuple[float, float, float]
 
 
@@ -43,6 +45,8 @@ def signed(
         settings["light_estimated"] = dict(asdict(found.light_guess))
     if found.heights is not None:
         settings["amplitude_interval"] = {key: float(f"{value:.3g}") for key, value in found.heights.ends.items()}
+    if found.told:
+        settings["medium_intervals"] = {t.key: [float(f"{v:.3g}") for v in (t.low, t.high)] for t in found.told}
     if final.detail.medium is not None:
         settings["background"] = [float(f"{value:.4g}") for value in found.background]
     version = importlib.metadata.version

@@ -43,7 +43,7 @@ SOLID_ROUGHNESS = (0.05, 1.2)
 """Range of the amplitude in cells, of displacement and of solid volumes: what overhangs may rise higher."""
 
 MEDIUM_ROUGHNESS = (0.3, 3.0)
-SOFTNESS = (0.3, 4.0)
+SOFTNESS = (0.3, 2.5)
 DEPTH = (0.5, 60.0)
 EXPONENT = (0.7, 10.0)
 ASYMMETRY = (0.0, 0.9)

@@ -107,7 +107,7 @@ class Space:
     unit above which an octave would be finer than the pixels. amplitude: the user's, or None if it is searched.
     anisotropy, roughness, stripes: bounds; roughness is the amplitude in cells, A_d s, which is better conditioned than
     A_d: the slopes of the relief, and so its shading, go with it. plain: GD10's own numbers only. mode, medium: of the
-    details. A medium's lengths are searched in amplitudes (softness T / A_d, depth sigma_t A_d), for the same reason.
+    details. highest: the largest amplitude. A medium's lengths are searched in amplitudes (softness T / A_d, depth sigma_t A_d), for the same reason.
     """
 
     domain: str
@@ -120,6 +120,7 @@ class Space:
     plain: bool = False
     mode: Literal["displacement", "volume"] = "displacement"
     medium: bool = False
+    highest: float = bounds("relief.amplitude")[1]
 
     @property
     def pigmented(self) -> bool:
@@ -197,7 +198,7 @@ class Space:
         )
         amplitude = self.amplitude
         if amplitude is None:
-            amplitude = min(values["roughness"] / values["noise.scale"], bounds("relief.amplitude")[1])
+            amplitude = min(values["roughness"] / values["noise.scale"], self.highest)
         pigment = Reflectance()
         if kind.pigment:
             pigment = pigment.model_copy(update={name: values[f"reflectance.{name}"] for name in PIGMENT})

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from voldetail.detail import parameter
 from voldetail.report.verdict import number
 
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ def facts(result: FitResult) -> list[tuple[str, str]]:
         ("Search", f"{result.evaluations} pictures compared in {duration(result.seconds)}{rate}"),
         ("Solver", f"{setup.fit.solver}, metric {setup.fit.metric}, seed {setup.seed}; {result.status}"),
         ("Distance", distance_words(result)),
-        ("Amplitude", amplitude_words(result)),
+        *([("Medium", medium_words(result))] if result.told else [("Amplitude", amplitude_words(result))]),
     ]
 
 
@@ -110,6 +111,20 @@ def amplitude_words(result: FitResult) -> str:
     return text
 
 
+def medium_words(result: FitResult) -> str:
+    """What the photo tells of each number of a medium, and what it does not."""
+    said, open_ = [], []
+    for t in result.told:
+        label = parameter(t.key).label.lower()
+        if t.nothing:
+            open_.append(label)
+            continue
+        less, more = (" or less" if t.low <= t.least else ""), (" or more" if t.high >= t.most else "")
+        said.append(f"{label} {number(t.value)} ({number(t.low)}{less} to {number(t.high)}{more})")
+    words = ", ".join(said) if said else "none of its numbers is told"
+    return words + (f"; the photo does not tell {', '.join(open_)}" if open_ and said else "")
+
+
 def _span(low: float, high: float, heights: AmplitudeInterval) -> str:
     """An interval in words; an end beyond which nothing was looked at says so."""
     least, most = min(heights.amplitudes) * (1 + 1e-9), max(heights.amplitudes) * (1 - 1e-9)
@@ -119,6 +134,7 @@ def _span(low: float, high: float, heights: AmplitudeInterval) -> str:
 def _proxy(setup: Setup) -> str:
     proxy = setup.proxy
     name = f"the mesh {proxy.mesh.name}" if proxy.mesh else f"a {proxy.kind}"
+    what = {"displacement": "", "volume": ", filled with a medium" if setup.medium else ", filled with solid matter"}[setup.mode]
     if setup.camera.kind == "orthographic":
-        return f"{name}, orthographic camera"
-    return f"{name}, perspective camera with {setup.camera.field_of_view:g} degrees across"
+        return f"{name}{what}, orthographic camera"
+    return f"{name}{what}, perspective camera with {setup.camera.field_of_view:g} degrees across"

@@ -152,7 +152,7 @@ def _shapes(page: _Page, result: FitResult, gallery: Gallery) -> None:
     left, row = MARGIN + 3 * (TILE + GAP) + 0.1, 0.0
     page.text(left, 0, "How it was found", 11, weight="bold")
     for label, text in facts(result):
-        lines = textwrap.wrap(text, 44)[:4]
+        lines = textwrap.wrap(text, 44)[: 6 if label == "Medium" else 4]
         down = 0.32 + row * 0.165
         page.text(left, down, label, 7.5, weight="bold")
         page.text(left + 0.62, down, "\n".join(lines), 7.5, linespacing=1.3)
