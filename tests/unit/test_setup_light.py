@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from voldetail.errors import InputError
 from voldetail.scene.lights_text import angles_of, direction_of, light_text, parse_light
 from voldetail.scene.setup import Light
+from voldetail.scene.setup_file import setup_from
 
 
 @pytest.mark.parametrize(
@@ -55,12 +56,8 @@ def test_flash_and_point() -> None:
         ("nan,45", "not finite"),
         ("1,inf,1", "not finite"),
         ("point:0,0,nan", "not finite"),
-        ("90,0", "behind the surface: its elevation is 0"),
-        ("90,-10", "behind the surface"),
-        ("0,1,0", "behind the surface: z is 0"),
-        ("0,1,-1", "behind the surface"),
-        ("point:0,0,-1", "behind the surface: z is -1"),
         ("90,91", "out of range"),
+        ("90,-91", "out of range"),
         ("400,45", "out of range"),
         ("flash@1.5,0.5", "foot[0] = 1.5 is out of range"),
         ("flash@0.5,0.5,0", "height = 0.0 is out of range"),
@@ -123,3 +120,15 @@ def test_any_text_is_a_light_or_refused(text: str) -> None:
         message = light_text(light)
     assert message.encode()
     assert "\n" not in message
+
+
+@pytest.mark.parametrize("text", ["90,0", "90,-10", "0,1,0", "0,1,-1", "point:0,0,-1"])
+def test_a_light_from_behind_is_for_a_medium_alone(text: str) -> None:
+    light = parse_light(text)
+    assert light.behind.startswith("it is behind the surface: z is ")
+    medium = {"photo": {"path": "cloud.png"}, "light": text, "mode": "volume", "look": "medium"}
+    assert setup_from(medium, "test").light == light
+    for fields in ({}, {"mode": "volume"}):
+        with pytest.raises(InputError, match="the light cannot be used: it is behind the surface"):
+            setup_from({"photo": {"path": "wall.png"}, "light": text, **fields}, "test")
+    assert parse_light("90,1").behind == ""

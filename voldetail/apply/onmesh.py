@@ -59,6 +59,8 @@ def render(
     """
     if envmap is not None and light is not None:
         raise InputError("A light and an environment map were both given: choose one.")
+    if light is not None and light.behind and detail.medium is None:
+        raise InputError(f"The light cannot be used: {light.behind}.")
     view = _view(detail, scale, mesh, size, camera)
     lamp = lamp_of(light or _default_light())
     proxy, whole = _proxy(mesh, view, rotation)
@@ -90,10 +92,10 @@ def relight(
 ) -> Iterator[tuple[float, float, Picture]]:
     """Yield (azimuth, elevation, picture) for every pair of angles in degrees; the geometry is made once.
 
-    Raises InputError for an elevation that is not above 0, at most 90 degrees.
+    Raises InputError for an elevation that is not above 0, at most 90 degrees; -90 to 90 for a medium.
     """
     for elevation in elevations:
-        if not 0 < elevation <= 90:
+        if not (0 < elevation <= 90 or (detail.medium is not None and abs(elevation) <= 90)):
             raise InputError(f"The elevation {elevation:g} is out of range: it has to be over 0, at most 90 degrees.")
     view = _view(detail, scale, mesh, size, camera)
     proxy, whole = _proxy(mesh, view, rotation)

@@ -111,7 +111,7 @@ def relight(
             help="Degrees: one, a list as 0,90, or START:STOP:COUNT steps without STOP, as 0:360:12."
         ),
     ],
-    elevation: Annotated[str, typer.Option(help="Degrees above the picture, over 0 to 90; as azimuth.")],
+    elevation: Annotated[str, typer.Option(help="Degrees above the picture, over 0 to 90 (-90 to 90 for a medium); as azimuth.")],
     folder: Annotated[Path, typer.Option("--output", "-o", help="The folder for the pictures.")],
     shape: Annotated[str, typer.Argument(metavar="[MESH]", help=MESH_HELP)] = "plane",
     scale: _Scale = 1.0,
@@ -130,13 +130,16 @@ def relight(
     from voldetail.apply import relight as frames_of
 
     azimuths = angles(azimuth, "--azimuth", lambda a: -720 <= a <= 720, "-720 to 720")
-    elevations = angles(elevation, "--elevation", lambda e: 0 < e <= 90, "over 0 to 90")
+    record = load_detail(detail)
+    if record.medium is None:
+        elevations = angles(elevation, "--elevation", lambda e: 0 < e <= 90, "over 0 to 90 (below for media alone)")
+    else:
+        elevations = angles(elevation, "--elevation", lambda e: -90 <= e <= 90, "-90 to 90")
     count = len(azimuths) * len(elevations)
     if count > MOST_FRAMES:
         raise InputError(f"These angles make {count} pictures; at most {MOST_FRAMES} are allowed.")
     if animation not in ("gif", "png", "none"):
         raise InputError(f"--animation {animation!r} is not known; use gif, png or none.")
-    record = load_detail(detail)
     earlier = _free_folder(folder, force)
     wide, turned, camera, shape = size(pixels), _rotation(rotation), _camera(fov), _shape(shape)
     behind = _background(background, record)

@@ -15,13 +15,15 @@ def resolve_light(setup: Setup, photo: Photo) -> tuple[Setup, LightGuess | None]
     """Return ``setup`` with the direction that its photo shows in place of "auto", and the LightGuess.
 
     Another light is left alone, and there is no guess. The same photo, mask and zone always give the same direction.
-    Raises InputError where the proxy is no plane facing the camera, or the photo does not show its light.
+    Raises InputError where the proxy is no plane facing the camera or the photo is of a medium, and where it does not show
+    its light.
     """
     if setup.light.kind != "auto":
         return setup, None
-    if setup.proxy.kind != "plane" or any(setup.proxy.rotation):
+    if setup.proxy.kind != "plane" or any(setup.proxy.rotation) or setup.medium:
+        other = "what is seen is a medium" if setup.medium else "the proxy is another"
         raise InputError(
-            f"The light auto is for a plane that faces the camera, and the proxy is another: give --light as {FORMS_GIVEN}."
+            f"The light auto is for a plane that faces the camera, and {other}: give --light as {FORMS_GIVEN}."
         )
     rows, columns = photo.pixels.shape[:2]
     mask = mask_of(setup, photo)

@@ -107,7 +107,8 @@ class Space:
     unit above which an octave would be finer than the pixels. amplitude: the user's, or None if it is searched.
     anisotropy, roughness, stripes: bounds; roughness is the amplitude in cells, A_d s, which is better conditioned than
     A_d: the slopes of the relief, and so its shading, go with it. plain: GD10's own numbers only. mode, medium: of the
-    details. highest: the largest amplitude. A medium's lengths are searched in amplitudes (softness T / A_d, depth sigma_t A_d), for the same reason.
+    details. highest: the largest amplitude. A medium's lengths are searched in amplitudes (softness T / A_d, depth
+    sigma_t A_d), for the same reason.
     """
 
     domain: str

@@ -28,12 +28,12 @@ class Light(Record):
     direction: Vector | None = Field(
         default=None,
         description="From the surface to the light; directional only.",
-        json_schema_extra={"allowed": "three numbers x, y, z, z over 0"},
+        json_schema_extra={"allowed": "three numbers x, y, z, z over 0 but for a medium"},
     )
     position: tuple[Length, Length, Length] | None = Field(
         default=None,
         description="Where the lamp is, in scene units; point only.",
-        json_schema_extra={"allowed": f"three numbers x, y, z of at most {FURTHEST:g}, z over 0"},
+        json_schema_extra={"allowed": f"three numbers x, y, z of at most {FURTHEST:g}, z over 0 but for a medium"},
     )
     foot: tuple[_Share, _Share] | None = Field(
         default=None,
@@ -69,12 +69,15 @@ class Light(Record):
         for name, kind in (("direction", "directional"), ("position", "point"), ("foot", "flash")):
             if getattr(self, name) is not None and self.kind != kind:
                 raise ValueError(f'{name} belongs to a light of kind "{kind}", but the kind is "{self.kind}"')
-        vector = self.direction or self.position
-        if vector and not vector[2] > 0:
-            raise ValueError(
-                f"it is behind the surface: z is {vector[2]:g}, and has to be over 0 (to the viewer)"
-            )
         return self
+
+    @property
+    def behind(self) -> str:
+        """Why only a medium can be lit by it, which light passes through; empty where it stands before the surface."""
+        vector = self.direction or self.position
+        if not vector or vector[2] > 0:
+            return ""
+        return f"it is behind the surface: z is {vector[2]:g}, and has to be over 0 (to the viewer) but for a medium"
 
 
 FORMS_GIVEN = "AZ,EL in degrees, x,y,z, flash, flash@height, flash@u,v, flash@u,v,height or point:x,y,z"
@@ -99,7 +102,7 @@ def angles_of(direction: Vector) -> tuple[float, float]:
 def parse_light(text: str) -> Light:
     """The light that `text` describes, in one of the forms in FORMS.
 
-    Raises InputError for another form, a wrong count, NaN, a zero vector or a light behind the surface.
+    Raises InputError for another form, a wrong count, NaN or a zero vector.
     """
     word = text.strip()
     if word in ("flash", "auto"):
@@ -115,15 +118,10 @@ def parse_light(text: str) -> Light:
     if len(numbers) == 3:
         return _light(text, direction=tuple(numbers))
     azimuth, elevation = numbers
-    if elevation <= 0:
+    if abs(elevation) > 90 or abs(azimuth) > 360:
         raise InputError(
-            f"The light {shown(text)} is behind the surface: its elevation is {elevation:g} degrees,"
-            " and has to be over 0, at most 90."
-        )
-    if elevation > 90 or abs(azimuth) > 360:
-        raise InputError(
-            f"The light {shown(text)} is out of range: azimuth is -360 to 360 and elevation over 0 to"
-            " 90 degrees."
+            f"The light {shown(text)} is out of range: azimuth is -360 to 360 and elevation over 0 to 90 degrees, or, for a"
+            " medium, -90 to 90."
         )
     return _light(text, direction=direction_of(azimuth, elevation))
 

@@ -230,4 +230,6 @@ class Setup(Record):
             raise ValueError('the look "medium" needs the mode "volume"; a displaced surface is solid')
         if self.mode == "volume" and self.domain == "surface":
             raise ValueError('the mode "volume" needs noise that fills space: leave the domain "solid"')
+        if self.light.behind and not self.medium:
+            raise ValueError(f"the light cannot be used: {self.light.behind}")
         return self
