@@ -68,7 +68,7 @@ class MarchedVolume:
         if medium.albedo is None:
             self._sky = SkyLight(grid, self.extinction, self.one_sided_sky)
         else:
-            self._many = ManyScatterings(grid, medium, self.one_sided_sky)
+            self._many = ManyScatterings(grid, medium, self.view, self.one_sided_sky)
         self._light: tuple[Lamp, LightDepth] | None = None
 
     def light_depth(self, lamp: Lamp) -> LightDepth:
