@@ -52,7 +52,7 @@ REACH = 3.0
 three, on slabs of optical thickness 0.3 to 30 (tests/benchmarks/scattering.py), of 1, 2, 3, 4 and 6."""
 
 SKY_TURN, LAMP_TURN = 0.8, 1.3
-"""Factors of b for the sky and the lamp: V(u) is steeper than its first order, of both signs in what is left of them."""
+"""Factors of the terms with b in A and D, which are of first order in direction only."""
 
 THIN = 0.2
 """Power (times g squared) of 1 - a by which less turns out of the beam in thin places: forward scattering leaves
@@ -71,9 +71,7 @@ class ManyScatterings:
     """All orders of scattering in a grid; ``one_sided``: no sky below the plane z = 0, where light is lost."""
 
     def __init__(self, grid: DensityGrid, medium: Medium, view: View, one_sided: bool) -> None:
-        assert medium.asymmetry is not None
-        assert medium.albedo is not None
-        self.g, self.albedo, self.extinction = medium.asymmetry, medium.albedo, medium.extinction
+        self.g, self.albedo, self.extinction = medium.asymmetry or 0.0, medium.albedo or 0.0, medium.extinction
         self.kept = math.sqrt(max(self.g, 0.0))
         self.coarse = _with_margin(coarsened(grid, max(1, round(max(grid.shape) / COARSE))))
         self.centre = centres(self.coarse)
@@ -147,7 +145,7 @@ class ManyScatterings:
         mi = mitsuba()
         light = self.light(lamp, depth)
         albedo, kept, extinction = (dr.opaque(mi.Float, v) for v in (self.albedo, self.kept, self.extinction))
-        g = dr.opaque(mi.Float, self.g)
+        g, narrowing = dr.opaque(mi.Float, self.g), dr.opaque(mi.Float, math.log2(max(self.kept, 1e-9)))
 
         def scatter(point: Any, found: Any, active: Any) -> list[Any]:
             direction, _, irradiance = lamp.at(point)
@@ -155,14 +153,12 @@ class ManyScatterings:
             thickness = extinction * depth.at(point, active)
             mean = albedo * kept * thickness
             first = dr.exp(-thickness)
-            second, third, all_orders = mean * first, 0.5 * mean * mean * first, dr.exp(mean - thickness)
-            # All further orders have the phase of their mean one.
-            rest = dr.maximum(all_orders - first - second - third, 0.0)
-            order = dr.maximum((mean * all_orders - second - 2.0 * third) / dr.maximum(rest, 1e-7), 3.0)
-            beam = (
-                first * _phase(g, turned) + second * _phase(g * kept, turned) + third * _phase(g * kept * kept, turned)
-                + rest * _phase(g * dr.power(kept, order), turned)
-            )  # fmt: skip
+            second, all_orders = mean * first, dr.exp(mean - thickness)
+            # Further ones have the phase of their mean one.
+            rest = dr.maximum(all_orders - first - second, 0.0)
+            order = dr.maximum((mean * all_orders - second) / dr.maximum(rest, 1e-7), 2.0)
+            further = _phase(g * dr.exp2(order * narrowing), turned)
+            beam = first * _phase(g, turned) + second * _phase(g * kept, turned) + rest * further
             many = light.at(point, active)
             lamplight = irradiance * beam + many.y
             return [albedo * many.x, albedo * lamplight, *(0.0 * thickness for _ in range(lobes))]
