@@ -23,7 +23,7 @@ exp(-(1 - w c) sigma depth), so that the first is single scattering:
     D = w (sum_i exp(-t) (w c t)^i / i! p(g c^i) + f + G b . v f / (1 - a)),    t = sigma depth, p: the phase function
 
 How near it comes: tests/benchmarks/scattering.py. Solved on the sky's coarse grid by conjugate gradients, without a
-random number; linear in the light. A frame takes 1.3 times as long as with one scattering, 1.15 for a grid of 128 cubed.
+random number; linear in the light. A frame takes 1.3 times as long as with one scattering, 1.2 for a grid of 128 cubed.
 """
 
 from __future__ import annotations
