@@ -3,8 +3,8 @@
 Run with:  python -m tests.benchmarks.marching [-o results/volume] [--cells 64 128 256] [--shadows]
 A frame is what one evaluation of a fit costs: a grid that has changed is made ready (gradients, empty blocks, sky), the
 light is swept through it and the picture of 192 x 192 pixels is marched, one sample a pixel. The density is a shell with
-waves on it; "solid" is shaded on its gradient and opaque within two cells, "cloud" scatters and lets light through. The
-paper reports 4 to 32 frames a second on a GTX 280 (GD10 section 8).
+waves on it; "solid" is shaded on its gradient and opaque within two cells, "cloud" scatters once and lets light through,
+"white cloud" scatters any number of times. The paper reports 4 to 32 frames a second on a GTX 280 (GD10 section 8).
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def shell(cells: int, scale: float = 1.0) -> DensityGrid:
 
 
 def media(cells: int) -> dict[str, Medium]:
-    return {"solid": Medium(1.5 * cells / 2), "cloud": Medium(5.0, 0.3)}
+    return {"solid": Medium(1.5 * cells / 2), "cloud": Medium(5.0, 0.3), "white cloud": Medium(5.0, 0.3, 0.99)}
 
 
 def frame(volume: MarchedVolume, grid: DensityGrid, medium: Medium) -> tuple[Components, list[float]]:

@@ -112,6 +112,32 @@ def test_a_white_furnace_stays_white(extinction: float, g: float) -> None:
     assert traced_picture(grey, 64, 0.0).mean() < 1 - 8 * deviation
 
 
+@pytest.mark.parametrize(
+    ("extinction", "g", "albedo", "light", "apart"),
+    [(12.0, 0.0, 0.99, 0.15, 0.1), (12.0, 0.5, 0.9, 0.15, 0.1), (3.0, 0.8, 0.95, 0.25, 0.1)],
+)
+def test_all_orders_in_a_cloud_are_near_the_traced_ones(
+    extinction: float, g: float, albedo: float, light: float, apart: float
+) -> None:
+    """Mean brightness of the lamp and of the sky, and their pattern; tests/benchmarks/scattering.py has more of them."""
+    grid, medium = cloud(24), Medium(extinction, g, albedo)
+    seen, once = marched(grid, medium), marched(grid, Medium(extinction, g))
+    for found, lamp, sky, tolerance in ((seen.diffuse, OBLIQUE, 0.0, light), (seen.ambient, None, 1.0, apart)):
+        wanted = traced_picture(TracedVolume(grid, medium, WHOLE, lamp, sky=sky, scatterings=256), 384, 0.0)[..., 0]
+        assert found.mean() == pytest.approx(wanted.mean(), rel=tolerance)
+        # The tracer's grain is in it.
+        assert np.corrcoef(found.ravel(), wanted.ravel())[0, 1] > (0.95 if g == 0 or lamp is None else 0.9)
+        assert wanted.mean() > 1.3 * albedo * (once.diffuse if lamp else once.ambient).mean()
+
+
+def test_what_leaves_a_thick_slab_is_near_what_is_traced() -> None:
+    """Front and back of optical thickness 10, albedo 0.99, even scattering: 0.57 and 0.10 of a white surface."""
+    grid, medium = slab(HEIGHTS["even"][0]), Medium(20.0, 0.0, 0.99)
+    for lamp in (OBLIQUE, Lamp(direction=(0.0, 0.0, -1.0))):
+        wanted = float(traced_picture(TracedVolume(grid, medium, MIDDLE, lamp, scatterings=512), 512, 0.0).mean())
+        assert float(marched(grid, medium, lamp, MIDDLE).diffuse.mean()) == pytest.approx(wanted, rel=0.15)
+
+
 def test_a_hard_ball_is_shaded_as_the_mesh_of_a_ball() -> None:
     """Where both are seen whole. A density is never quite hard: its silhouette is about a cell wider.
 

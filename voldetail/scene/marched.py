@@ -3,8 +3,9 @@
     I = sum_i T_i alpha_i C_i,   alpha_i = 1 - exp(-sigma d_i h),   T_{i+1} = T_i (1 - alpha_i),   coverage = 1 - T
 
 d_i: density in the middle of step i of length h; sigma: extinction. C is what a place reflects, in unit components:
-a surface's (ambient, diffuse, Phong lobes) on n = -grad d / |grad d|, or a medium's single scattering. Steps are equal
-along a ray and lie at fixed places: no random number, so no grain. The error falls with the square of the step.
+a surface's (ambient, diffuse, Phong lobes) on n = -grad d / |grad d|, or what a medium scatters, of one order here or of
+all (`many_scatterings`). Steps are equal along a ray and lie at fixed places: no random number, so no grain. The error
+falls with the square of the step.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from voldetail.scene.density_grid import DensityGrid
 from voldetail.scene.lamp import Lamp
 from voldetail.scene.light_depth import LightDepth
 from voldetail.scene.lookup import Emptiness, with_gradient
+from voldetail.scene.many_scatterings import ManyScatterings
 from voldetail.scene.medium import Medium, check
 from voldetail.scene.rays import rays_of
 from voldetail.scene.sky_light import SkyLight
@@ -63,7 +65,10 @@ class MarchedVolume:
         self.extinction = dr.opaque(mi.Float, medium.extinction)
         dr.eval(grid.density)
         self._density, self._emptiness = with_gradient(grid), Emptiness(grid)
-        self._sky = SkyLight(grid, self.extinction, self.one_sided_sky)
+        if medium.albedo is None:
+            self._sky = SkyLight(grid, self.extinction, self.one_sided_sky)
+        else:
+            self._many = ManyScatterings(grid, medium, self.view, self.one_sided_sky)
         self._light: tuple[Lamp, LightDepth] | None = None
 
     def light_depth(self, lamp: Lamp) -> LightDepth:
@@ -129,6 +134,8 @@ class MarchedVolume:
     def _shade(self, lamp: Lamp, shininess: tuple[float, ...], along: Any) -> Any:
         """Return the function of (point, gradient and density, active) that gives the unit components there."""
         mi = mitsuba()
+        if self.medium.albedo is not None:
+            return self._many.shade(lamp, self.light_depth(lamp), along, len(shininess))
         light, sky, edge = self.light_depth(lamp), self._sky, dr.opaque(mi.Float, self.grid.edge)
         flat = dr.opaque(mi.Float, FLAT / (max(self.grid.shape) * self.grid.edge))
         exponents = [dr.opaque(mi.Float, n) for n in shininess]

@@ -27,13 +27,14 @@ class Medium:
 
     extinction: share of light lost a scene unit at density 1, above 0. asymmetry: None for a surface's shading on the
     density's gradient (GD10 section 6: Ka, Kd, Ks); a number g from -0.95 to 0.95 for a medium that scatters with
-    Henyey and Greenstein's phase function, mean cosine g, in which Ka and Kd both stand for the albedo. The marcher sees light
-    that scattered once: a thick white cloud is several times as bright (`traced_medium.SCATTERINGS`), of much the same
-    pattern.
+    Henyey and Greenstein's phase function, mean cosine g. albedo: None for light that scattered once, in which Ka and Kd
+    both stand for the albedo: a thick white cloud is several times as bright (`traced_medium.SCATTERINGS`); a number from
+    0 to 1, the share of light that scatters where it is stopped, for all orders, approximated (`many_scatterings`).
     """
 
     extinction: float
     asymmetry: float | None = None
+    albedo: float | None = None
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.extinction) and self.extinction > 0):
@@ -45,6 +46,15 @@ class Medium:
             raise InputError(
                 f"The medium's asymmetry is {self.asymmetry:g}, but has to be from -{LARGEST_ASYMMETRY} to"
                 f" {LARGEST_ASYMMETRY}: give 0 for even scattering, or about 0.8 for a cloud."
+            )
+        if self.albedo is not None and self.asymmetry is None:
+            raise InputError(
+                f"The medium's albedo is {self.albedo:g}, but what is shaded as a surface scatters nothing inside: give an"
+                " asymmetry too, or no albedo."
+            )
+        if self.albedo is not None and not 0 <= self.albedo <= 1:
+            raise InputError(
+                f"The medium's albedo is {self.albedo:g}, but has to be from 0 to 1: give about 0.99 for a white cloud."
             )
 
 

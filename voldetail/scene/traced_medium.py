@@ -19,11 +19,12 @@ from voldetail.scene.traced import emitters_of
 from voldetail.scene.view import View
 
 ALBEDO = 0.99
-"""Single-scattering albedo unless given: 1 for a cloud of water, less so that long paths end."""
+"""Single-scattering albedo unless given here or by the medium: 1 for a cloud of water, less so that long paths end."""
 
 SCATTERINGS = 128
 """Times that light may scatter. Of what a white slab of optical thickness 10 reflects straight back (g = 0), all is there
-at 128, 94 % at 64, 54 % at 8 and 15 % at 1, which is what the marcher sees; for g = 0.8 100, 98, 20 and 2 %."""
+at 128, 94 % at 64, 54 % at 8 and 15 % at 1, which is what the marcher sees of a
+medium without an albedo; for g = 0.8 100, 98, 20 and 2 %."""
 
 OPAQUE = 16.0
 """Largest optical thickness of a cell that is sampled. Collisions are drawn against the densest cell of the whole box
@@ -33,17 +34,20 @@ OPAQUE = 16.0
 class TracedVolume:
     """A Mitsuba scene of one medium in a box with its lights, seen through a View.
 
-    albedo: share of the light that scatters where it is stopped, 0 to 1; a colour of three of them is tinted. sky:
+    albedo: share of the light that scatters where it is stopped, 0 to 1; a colour of three of them is tinted; the medium's
+    own unless given, or else ALBEDO. sky:
     radiance of the uniform sky, shown behind the medium if ``show_sky``. scatterings: the most for one path; 1 for what
-    the marcher sees. tint: colour of the lights; ``emitters`` of one's own take their place.
+    the marcher sees of a medium without an albedo. tint: colour of the lights; ``emitters`` of one's own take their place.
     """
 
     def __init__(
         self, grid: DensityGrid, medium: Medium, view: View, lamp: Lamp | None, *, sky: float = 0.0,
-        albedo: float | tuple[float, float, float] = ALBEDO, scatterings: int = SCATTERINGS, show_sky: bool = False,
+        albedo: float | tuple[float, float, float] | None = None, scatterings: int = SCATTERINGS, show_sky: bool = False,
         tint: tuple[float, ...] = (1.0, 1.0, 1.0), emitters: dict[str, Any] | None = None,
     ) -> None:  # fmt: skip
         check(grid)
+        if albedo is None:
+            albedo = ALBEDO if medium.albedo is None else medium.albedo
         colour = np.broadcast_to(np.asarray(albedo, dtype=float), (3,))
         if not np.all((colour >= 0.0) & (colour <= 1.0)):
             raise InputError(f"The medium's albedo is {albedo}, but has to be from 0 to 1: give 0.99 for a white cloud.")

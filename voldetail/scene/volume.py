@@ -131,7 +131,7 @@ def medium_of(detail: Detail, edge: float, scale: float = 1.0) -> Medium:
     medium = detail.medium
     if medium is None:
         return Medium(SOLID_DEPTH / edge)
-    return Medium(medium.extinction / scale, medium.asymmetry)
+    return Medium(medium.extinction / scale, medium.asymmetry, medium.albedo)
 
 
 def windowed(plan: ShellPlan, view: View, margin: float) -> ShellPlan:
