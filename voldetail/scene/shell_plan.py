@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from voldetail.errors import InputError
+from voldetail.scene.isosurface import BYTES_A_CELL as BYTES_A_MARCHED_CELL
 from voldetail.scene.meshes import Mesh, load_mesh, normalise
 from voldetail.scene.proxy import rotation_matrix
 from voldetail.scene.setup import ProxySetup
+from voldetail.scene.shell_blocks import SIDE, block_counts, near_blocks
 from voldetail.scene.topology import crosses
 
 DEFAULT_BUDGET = 1 << 30
@@ -35,6 +37,16 @@ SECONDS_A_CELL = {"simple": 1.5e-8, "mesh": 6e-8}
 SECONDS_A_BAND_CELL = {"simple": 5e-7, "mesh": 5e-6}
 """On two cores, with noise of two octaves; measured. Of the order of, and no promise."""
 
+VERTICES_A_SQUARE = 4.0
+BYTES_A_TILED_VERTEX = 130.0
+"""PLACEHOLDER"""
+
+BYTES_A_BLOCK = 100.0
+"""Of all the grid's, while those are found that the surface can reach."""
+
+SECONDS_A_BLOCK = {"simple": 0.1, "mesh": 0.3}
+SECONDS_A_TILED_VERTEX = 5e-6
+
 
 @dataclass(frozen=True, eq=False)
 class ShellPlan:
@@ -42,7 +54,8 @@ class ShellPlan:
 
     edge, thickness, amplitude in scene units; shape (nz, ny, nx) and lower as those of a DensityGrid; depth: how far a
     plane's slab reaches down. byte_count: memory at the most. seconds: about how long density and noise take. mesh: the
-    checked mesh in its own frame, None for the simple shapes.
+    checked mesh in its own frame, None for the simple shapes. blocks: how many blocks of SIDE cells a side the surface can
+    reach, where the grid as a whole is too large (then bytes and seconds are those of `tiled_isosurface`); 0 for a dense one.
     """
 
     proxy: ProxySetup
@@ -55,6 +68,7 @@ class ShellPlan:
     byte_count: int
     seconds: float
     mesh: Mesh | None = None
+    blocks: int = 0
 
     @property
     def cells(self) -> int:
@@ -65,20 +79,31 @@ class ShellPlan:
     def sentence(self) -> str:
         """The plan in words, for the user to read before it is carried out."""
         nz, ny, nx = self.shape
+        tiles = f" in at most {self.blocks} of {math.prod(block_counts(self.shape))} blocks," if self.blocks else ""
         return (
-            f"{nx} x {ny} x {nz} cells of {self.edge:.3g} scene units, {self.byte_count / 2**20:.0f} MB,"
+            f"{nx} x {ny} x {nz} cells of {self.edge:.3g} scene units,{tiles} {self.byte_count / 2**20:.0f} MB,"
             f" about {max(self.seconds, 1.0):.0f} s"
         )
 
+    def check_dense(self) -> None:
+        """Refuse to fill the whole grid where it was planned for tiles."""
+        if self.blocks:
+            raise InputError(
+                f"A grid of {self.sentence.split(',')[0]} was planned for its surface by tiles alone: plan it without tiles to"
+                " fill it."
+            )
+
 
 def plan_shell(
-    proxy: ProxySetup, edge: float, thickness: float, amplitude: float = 0.0, budget: int = DEFAULT_BUDGET
+    proxy: ProxySetup, edge: float, thickness: float, amplitude: float = 0.0, budget: int = DEFAULT_BUDGET,
+    tiles: bool = False,
 ) -> ShellPlan:
     """Return the grid of cubes of ``edge`` about ``proxy`` with a shell of ``thickness`` and room to shift by ``amplitude``.
 
     A good ``edge`` is a pixel of the picture; a good ``thickness`` for solid matter three edges. Raises InputError for a
     length that is not over 0, a shell thinner than LEAST_CELLS edges or thicker than the object, an open mesh, and a grid
-    that takes more than ``budget`` bytes.
+    that takes more than ``budget`` bytes. With ``tiles``, for who wants the surface alone, a grid that takes more with its
+    surface is planned for `tiled_isosurface`, and refused only where that takes more too; without, for who needs the grid.
     """
     for name, value in (("cell's edge", edge), ("shell's thickness", thickness)):
         if not (math.isfinite(value) and value > 0):
@@ -93,18 +118,25 @@ def plan_shell(
     mesh = _closed_mesh(proxy) if proxy.kind == "mesh" else None
     _check_inside(proxy, thickness)
     plan = _layout(proxy, mesh, edge, thickness, amplitude)
+    if tiles:
+        if plan.byte_count + BYTES_A_MARCHED_CELL * plan.cells <= budget:
+            return plan
+        plan = _layout(proxy, mesh, edge, thickness, amplitude, tiles)
     if plan.byte_count > budget:
-        fitting = _fitting_edge(plan, budget)
+        fitting = _fitting_edge(plan, budget, tiles)
         advice = f"use an edge of at least {fitting:.3g}"
         if fitting * LEAST_CELLS > thickness:
             advice += f" (and a thickness of at least {fitting * LEAST_CELLS:.3g})"
         if math.isinf(fitting):
             advice = f"the program alone takes {BYTES_AT_LEAST / 2**20:.0f} MB, so allow more"
         raise InputError(
-            f"A grid of {plan.sentence.split(',')[0]} needs {plan.byte_count / 2**20:.0f} MB, more than the"
-            f" {budget / 2**20:.0f} MB allowed: {advice}, or allow {math.ceil(plan.byte_count / 2**20)} MB."
+            f"A grid of {plan.sentence.split(',')[0]} needs {plan.byte_count / 2**20:.0f} MB{' by tiles' if tiles else ''}, more"
+            f" than the {budget / 2**20:.0f} MB allowed: {advice}, or allow {math.ceil(plan.byte_count / 2**20)} MB."
         )
-    return plan
+    if not tiles:
+        return plan
+    blocks = len(near_blocks(plan))
+    return replace(plan, blocks=blocks, seconds=plan.seconds + blocks * SECONDS_A_BLOCK["mesh" if mesh else "simple"])
 
 
 def _closed_mesh(proxy: ProxySetup) -> Mesh:
@@ -127,7 +159,9 @@ def _check_inside(proxy: ProxySetup, thickness: float) -> None:
         )
 
 
-def _layout(proxy: ProxySetup, mesh: Mesh | None, edge: float, thickness: float, amplitude: float) -> ShellPlan:
+def _layout(
+    proxy: ProxySetup, mesh: Mesh | None, edge: float, thickness: float, amplitude: float, tiles: bool = False
+) -> ShellPlan:
     above = amplitude + thickness / 2 + edge
     depth = max(proxy.extent[2], thickness / 2 + SLAB_CELLS * edge)
     if mesh is not None:
@@ -151,22 +185,28 @@ def _layout(proxy: ProxySetup, mesh: Mesh | None, edge: float, thickness: float,
     kind = "simple" if mesh is None else "mesh"
     band = min(area * (thickness + amplitude) / edge / edge / edge, cells)
     nx, ny, nz = (int(count) for count in counts)
-    byte_count = cells * BYTES_A_CELL[kind] + BYTES_AT_LEAST
+    byte_count, seconds = cells * BYTES_A_CELL[kind] + BYTES_AT_LEAST, cells * SECONDS_A_CELL[kind]
+    if tiles:
+        # The side of a slab where the box cuts it is of the surface too.
+        whole = (area if proxy.kind != "plane" else 2 * area + 2 * (depth + above) * (proxy.extent[0] + proxy.extent[1]))
+        vertices = whole / edge / edge * VERTICES_A_SQUARE
+        byte_count = vertices * BYTES_A_TILED_VERTEX + float((counts / SIDE + 1).prod()) * BYTES_A_BLOCK + BYTES_AT_LEAST
+        seconds = vertices * SECONDS_A_TILED_VERTEX
     if mesh is not None:
         byte_count += BYTES_A_FACET * (len(mesh.faces) + area / edge / edge)
     return ShellPlan(
         proxy, edge, thickness, amplitude, (nz, ny, nx), (float(lower[0]), float(lower[1]), float(lower[2])), depth,
-        int(min(byte_count, 1e18)), cells * SECONDS_A_CELL[kind] + band * SECONDS_A_BAND_CELL[kind], mesh,
+        int(min(byte_count, 1e18)), seconds + band * SECONDS_A_BAND_CELL[kind], mesh,
     )
 
 
-def _fitting_edge(plan: ShellPlan, budget: int) -> float:
+def _fitting_edge(plan: ShellPlan, budget: int, tiles: bool) -> float:
     """Return the least edge, rounded up to three digits, with which the plan fits the budget; infinity where none does."""
     edge, byte_count = plan.edge, plan.byte_count
     while edge < 1e6:
         # Cells go with the third power; what does not shrink makes this too small rather than too large.
         edge *= max(1.02, (byte_count / max(budget, 1)) ** (1 / 3) * 0.9)
-        byte_count = _layout(plan.proxy, plan.mesh, edge, plan.thickness, plan.amplitude).byte_count
+        byte_count = _layout(plan.proxy, plan.mesh, edge, plan.thickness, plan.amplitude, tiles).byte_count
         if byte_count <= budget:
             digits = 10.0 ** (math.floor(math.log10(edge)) - 2)
             return math.ceil(edge / digits) * digits
