@@ -131,7 +131,7 @@ def bodies(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> tuple[NDA
     count, label = csgraph.connected_components(graph, directed=False)
     a, b, c = (vertices[faces[:, i]] for i in range(3))
     volume = np.bincount(label[faces[:, 0]], np.einsum("ij,ij->i", a, np.cross(b, c)) / 6, minlength=count)
-    return label, volume
+    return np.asarray(label), np.asarray(volume, dtype=np.float64)
 
 
 def large_enough(volume: NDArray[np.float64], least: float) -> NDArray[np.bool_]:

@@ -96,7 +96,8 @@ def signed_distances(
         cells = _by_block(np.flatnonzero(near & side), shape)
         for start in range(0, len(cells), CHUNK):
             part = cells[start : start + CHUNK]
-            points = np.stack(np.unravel_index(part, shape)[::-1], axis=1) + np.asarray(first[::-1], dtype=np.float64)
+            z, y, x = np.unravel_index(part, shape)
+            points = np.stack([x, y, z], axis=1).astype(np.float64) + first[::-1]
             distance.reshape(-1)[part] = _unsigned(points, triangles, width)
     distance[inside] *= -1.0
     return distance

@@ -17,19 +17,9 @@ from scipy.sparse import csgraph
 
 from voldetail.backend import mitsuba
 from voldetail.errors import InputError, VoldetailError
+from voldetail.scene import isosurface as whole
 from voldetail.scene.hypertexture import Hypertexture
-from voldetail.scene.isosurface import (
-    DEFAULT_BUDGET,
-    LEAST_ISLAND,
-    Isosurface,
-    bodies,
-    check_densest,
-    check_level,
-    large_enough,
-    march,
-    mend_normals,
-    outward_normals,
-)  # fmt: skip
+from voldetail.scene.isosurface import DEFAULT_BUDGET, LEAST_ISLAND, Isosurface
 from voldetail.scene.mesh_distance import Grid
 from voldetail.scene.shell import check_depth, on_block
 from voldetail.scene.shell_blocks import HALO, SIDE, mesh_blocks, near_blocks
@@ -69,7 +59,7 @@ def tiled_isosurface(
     where a mesh is thinner than the shell, and as soon as the vertices take more than ``budget`` bytes.
     """
     level = hypertexture.level if level is None else level
-    check_level(level)
+    whole.check_level(level)
     pieces: list[Piece] = []
     plan = hypertexture.shell.plan
     blocks = near_blocks(plan)
@@ -88,7 +78,7 @@ def tiled_isosurface(
             )
         if on_progress is not None:
             on_progress(done, len(blocks))
-    check_densest(densest, level)
+    whole.check_densest(densest, level)
     return _joined(hypertexture, pieces, least_island)
 
 
@@ -115,12 +105,12 @@ def _baked(
 
 def _piece(texture: Hypertexture, first: Grid, density: NDArray[np.float32], level: float) -> Piece:
     plan = texture.shell.plan
-    steps, faces = march(density, level)
+    steps, faces = whole.march(density, level)
     cells = steps + np.asarray(first[::-1]) + 0.5
     normals = np.empty((0, 3))
     if plan.mesh is not None:  # its distances are known here and now only
-        normals = outward_normals((cells * plan.edge + np.asarray(plan.lower)).astype(np.float32), texture.outward_at)
-    part, volumes = bodies(cells, faces)
+        normals = whole.outward_normals((cells * plan.edge + np.asarray(plan.lower)).astype(np.float32), texture.outward_at)
+    part, volumes = whole.bodies(cells, faces)
     on_side = ((steps == 0.0) | (steps == SIDE)).any(axis=1)
     seam = np.flatnonzero(on_side)
     names = np.full(len(steps), -1)
@@ -177,8 +167,8 @@ def _joined(hypertexture: Hypertexture, pieces: list[Piece], least: float) -> Is
     del cells_of, faces_of, normals_of
     vertices = (cells * plan.edge + np.asarray(plan.lower)).astype(np.float32)
     if plan.mesh is None:
-        normals = outward_normals(vertices, hypertexture.outward_at).astype(np.float32)
-    mend_normals(normals, cells, faces, plan.shape)
+        normals = whole.outward_normals(vertices, hypertexture.outward_at).astype(np.float32)
+    whole.mend_normals(normals, cells, faces, plan.shape)
     return Isosurface(vertices, faces, normals, dropped)
 
 
@@ -194,8 +184,8 @@ def _kept_parts(
     graph = sparse.coo_matrix((np.ones(len(part), np.int8), (part, size + where)), shape=(size + names,) * 2)
     _, label = csgraph.connected_components(graph, directed=False)
     body = label[:size]
-    volume = np.bincount(body, np.concatenate([piece.volumes for piece in pieces]))
-    keep = large_enough(volume, least)
+    volume = np.bincount(body, np.concatenate([piece.volumes for piece in pieces])).astype(np.float64)
+    keep = whole.large_enough(volume, least)
     return np.split(keep[body], starts[1:-1]), int(np.count_nonzero(~keep))
 
 
