@@ -120,8 +120,25 @@ def march(density: NDArray[np.float32], level: float) -> tuple[NDArray[np.float6
     mesh = trimesh.Trimesh(corners[:, ::-1].astype(np.float64), faces, process=False)
     mesh.merge_vertices()
     mesh.update_faces(mesh.nondegenerate_faces(height=0.0))
+    steps, faces = np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int64)
+    mesh.update_faces(unpaired(faces, flat(steps, faces)))
     mesh.remove_unreferenced_vertices()
     return np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int64)
+
+
+def flat(steps: NDArray[np.float64], faces: NDArray[Any]) -> NDArray[np.int64]:
+    """Return the numbers of the faces that lie in a side of a cube. Its neighbour may close the same side, facing back."""
+    a, b, c = (steps[faces[:, corner]] for corner in range(3))
+    return np.flatnonzero(((a == b) & (b == c) & (a == np.floor(a))).any(axis=1))
+
+
+def unpaired(faces: NDArray[Any], chosen: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return which ``faces`` (F, 3) stay where of the ``chosen`` ones those back to back are dropped: nothing is between."""
+    keep = np.ones(len(faces), dtype=bool)
+    if len(chosen):
+        _, same, count = np.unique(np.sort(faces[chosen], axis=1), axis=0, return_inverse=True, return_counts=True)
+        keep[chosen[count[same.reshape(-1)] == 2]] = False
+    return keep
 
 
 def bodies(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> tuple[NDArray[np.int32], NDArray[np.float64]]:

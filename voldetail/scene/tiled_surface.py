@@ -116,9 +116,10 @@ def _piece(texture: Hypertexture, first: Grid, density: NDArray[np.float32], lev
     names = np.full(len(steps), -1)
     names[seam] = _names(steps[seam], first, plan.shape)
     found = edges(faces)
+    balance = np.bincount(found.number, found.upwards * 2.0 - 1.0)
     lone = found.sides[found.number] == 1
     open_sides = np.stack([names[faces.T.reshape(-1)[lone]], names[faces[:, [1, 2, 0]].T.reshape(-1)[lone]]], axis=1)
-    if found.sides.max() > 2 or open_sides.min(initial=0) < 0:
+    if balance[found.sides > 1].any() or open_sides.min(initial=0) < 0:
         raise VoldetailError("The surface has a hole within a block of the grid, which is an error of this program.")
     return Piece(
         first, steps.astype(np.float32), normals.astype(np.float32), faces.astype(np.uint32), part, volumes, seam, names[seam],
@@ -147,7 +148,7 @@ def _joined(hypertexture: Hypertexture, pieces: list[Piece], least: float) -> Is
     keeps, dropped = _kept_parts(pieces, where, len(names), least)
     # The number of a seam's vertex in the whole is given by the first piece that has it.
     number = np.full(len(names), -1)
-    cells_of, normals_of, faces_of, count = [], [], [], 0
+    cells_of, normals_of, faces_of, flat_of, count, before = [], [], [], [], 0, 0
     for end, keep in zip(ends, keeps, strict=True):
         piece = pieces.pop(0)
         shared = where[end - len(piece.names) : end]
@@ -161,10 +162,16 @@ def _joined(hypertexture: Hypertexture, pieces: list[Piece], least: float) -> Is
         numbers[piece.seam] = number[shared]
         cells_of.append(piece.steps[mine].astype(np.float64) + np.asarray(piece.first[::-1]) + 0.5)
         normals_of.append(piece.normals[mine[: len(piece.normals)]])
-        faces_of.append(numbers[piece.faces[keep[piece.part[piece.faces[:, 0]]]]].astype(np.uint32))
-    cells, faces = np.concatenate(cells_of), np.concatenate(faces_of)
-    normals = np.concatenate(normals_of)
+        kept = piece.faces[keep[piece.part[piece.faces[:, 0]]]]
+        flat_of.append(before + whole.flat(piece.steps, kept))
+        faces_of.append(numbers[kept].astype(np.uint32))
+        before += len(kept)
+    cells, faces, normals = np.concatenate(cells_of), np.concatenate(faces_of), np.concatenate(normals_of)
     del cells_of, faces_of, normals_of
+    # Those back to back in the side between two blocks; within a block they are gone.
+    stays = whole.unpaired(faces, np.concatenate(flat_of))
+    if not stays.all():
+        faces = faces[stays]
     vertices = (cells * plan.edge + np.asarray(plan.lower)).astype(np.float32)
     if plan.mesh is None:
         normals = whole.outward_normals(vertices, hypertexture.outward_at).astype(np.float32)
