@@ -126,7 +126,7 @@ def march(density: NDArray[np.float32], level: float) -> tuple[NDArray[np.float6
     return np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int64)
 
 
-def flat(steps: NDArray[np.float64], faces: NDArray[Any]) -> NDArray[np.int64]:
+def flat(steps: NDArray[Any], faces: NDArray[Any]) -> NDArray[np.int64]:
     """Return the numbers of the faces that lie in a side of a cube. Its neighbour may close the same side, facing back."""
     a, b, c = (steps[faces[:, corner]] for corner in range(3))
     return np.flatnonzero(((a == b) & (b == c) & (a == np.floor(a))).any(axis=1))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from voldetail.errors import InputError
-from voldetail.scene.isosurface import BYTES_A_CELL as BYTES_A_MARCHED_CELL
+from voldetail.scene import isosurface
 from voldetail.scene.meshes import Mesh, load_mesh, normalise
 from voldetail.scene.proxy import rotation_matrix
 from voldetail.scene.setup import ProxySetup
@@ -37,15 +37,19 @@ SECONDS_A_CELL = {"simple": 1.5e-8, "mesh": 6e-8}
 SECONDS_A_BAND_CELL = {"simple": 5e-7, "mesh": 5e-6}
 """On two cores, with noise of two octaves; measured. Of the order of, and no promise."""
 
-VERTICES_A_SQUARE = 4.0
-BYTES_A_TILED_VERTEX = 130.0
-"""PLACEHOLDER"""
+VERTICES_A_SQUARE = 3.0
+"""Vertices of a relief for each square of an edge's side of the bare surface. Without relief there are 1.5; on a sphere of 256
+cells, with noise of scale 4 and amplitudes of 0.1 and 0.2, 1.8 and 2.6; of scale 16, as steep as few are, 3.6 and 7."""
+
+BYTES_A_TILED_VERTEX = 220.0
+"""At the peak, measured with 1 to 2 million vertices; BYTES_AT_LEAST holds what one block needs."""
 
 BYTES_A_BLOCK = 100.0
 """Of all the grid's, while those are found that the surface can reach."""
 
-SECONDS_A_BLOCK = {"simple": 0.1, "mesh": 0.3}
-SECONDS_A_TILED_VERTEX = 5e-6
+SECONDS_A_BLOCK = {"simple": 0.03, "mesh": 0.3}
+SECONDS_A_TILED_VERTEX = 2e-6
+"""As above."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,16 +99,19 @@ class ShellPlan:
 
 
 def plan_shell(
-    proxy: ProxySetup, edge: float, thickness: float, amplitude: float = 0.0, budget: int = DEFAULT_BUDGET,
-    tiles: bool = False,
+    proxy: ProxySetup, edge: float, thickness: float, amplitude: float = 0.0, budget: int | None = None, tiles: bool = False
 ) -> ShellPlan:
     """Return the grid of cubes of ``edge`` about ``proxy`` with a shell of ``thickness`` and room to shift by ``amplitude``.
 
     A good ``edge`` is a pixel of the picture; a good ``thickness`` for solid matter three edges. Raises InputError for a
     length that is not over 0, a shell thinner than LEAST_CELLS edges or thicker than the object, an open mesh, and a grid
-    that takes more than ``budget`` bytes. With ``tiles``, for who wants the surface alone, a grid that takes more with its
-    surface is planned for `tiled_isosurface`, and refused only where that takes more too; without, for who needs the grid.
+    that takes more than ``budget`` bytes (DEFAULT_BUDGET).
+
+    With ``tiles``, for who wants the surface and not the grid, ``budget`` (that of `isosurface`) is for both together: where
+    they take more the plan is one for `tiled_isosurface`, and is refused only where that takes more too.
     """
+    if budget is None:
+        budget = isosurface.DEFAULT_BUDGET if tiles else DEFAULT_BUDGET
     for name, value in (("cell's edge", edge), ("shell's thickness", thickness)):
         if not (math.isfinite(value) and value > 0):
             raise InputError(f"The {name} is {value:g}; it has to be a length over 0 scene units.")
@@ -119,7 +126,8 @@ def plan_shell(
     _check_inside(proxy, thickness)
     plan = _layout(proxy, mesh, edge, thickness, amplitude)
     if tiles:
-        if plan.byte_count + BYTES_A_MARCHED_CELL * plan.cells <= budget:
+        marched = isosurface.BYTES_A_CELL * plan.cells + isosurface.BYTES_A_VERTEX * _vertices(plan)
+        if plan.byte_count + marched <= budget:
             return plan
         plan = _layout(proxy, mesh, edge, thickness, amplitude, tiles)
     if plan.byte_count > budget:
@@ -166,14 +174,11 @@ def _layout(
     depth = max(proxy.extent[2], thickness / 2 + SLAB_CELLS * edge)
     if mesh is not None:
         corners = mesh.vertices
-        area = 0.5 * float(np.linalg.norm(crosses(mesh.vertices, mesh.faces), axis=1).sum())
     else:
         half = np.asarray(proxy.extent) / 2
         # A plane's box holds its slab, and the room above it; the others leave room on all sides.
         low, high = (np.array([*-half[:2], -depth]), np.array([*half[:2], above])) if proxy.kind == "plane" else (-half, half)
         corners = np.array([[(low, high)[bit >> axis & 1][axis] for axis in range(3)] for bit in range(8)])
-        w, h, d = proxy.extent
-        area = w * h if proxy.kind == "plane" else 2 * (w * h + h * d + d * w)
     placed = corners @ rotation_matrix(proxy.rotation).T + np.asarray(proxy.position)
     margin = 0.0 if proxy.kind == "plane" else above
     low, high = placed.min(axis=0) - margin, placed.max(axis=0) + margin
@@ -183,21 +188,43 @@ def _layout(
     counts = np.minimum(counts, 1e9)  # an edge of 1e-300 is refused for its memory, not for an overflow
     cells = float(counts.prod())
     kind = "simple" if mesh is None else "mesh"
+    area = _area(proxy, mesh)
     band = min(area * (thickness + amplitude) / edge / edge / edge, cells)
     nx, ny, nz = (int(count) for count in counts)
-    byte_count, seconds = cells * BYTES_A_CELL[kind] + BYTES_AT_LEAST, cells * SECONDS_A_CELL[kind]
+    byte_count, seconds = cells * BYTES_A_CELL[kind], cells * SECONDS_A_CELL[kind]
+    plan = ShellPlan(
+        proxy, edge, thickness, amplitude, (nz, ny, nx), (float(lower[0]), float(lower[1]), float(lower[2])), depth, 0, 0.0, mesh
+    )
     if tiles:
-        # The side of a slab where the box cuts it is of the surface too.
-        whole = (area if proxy.kind != "plane" else 2 * area + 2 * (depth + above) * (proxy.extent[0] + proxy.extent[1]))
-        vertices = whole / edge / edge * VERTICES_A_SQUARE
-        byte_count = vertices * BYTES_A_TILED_VERTEX + float((counts / SIDE + 1).prod()) * BYTES_A_BLOCK + BYTES_AT_LEAST
-        seconds = vertices * SECONDS_A_TILED_VERTEX
+        byte_count = _vertices(plan) * BYTES_A_TILED_VERTEX + float((counts / SIDE + 1).prod()) * BYTES_A_BLOCK
+        seconds = _vertices(plan) * SECONDS_A_TILED_VERTEX
     if mesh is not None:
         byte_count += BYTES_A_FACET * (len(mesh.faces) + area / edge / edge)
-    return ShellPlan(
-        proxy, edge, thickness, amplitude, (nz, ny, nx), (float(lower[0]), float(lower[1]), float(lower[2])), depth,
-        int(min(byte_count, 1e18)), seconds + band * SECONDS_A_BAND_CELL[kind], mesh,
+    return replace(
+        plan, byte_count=int(min(byte_count + BYTES_AT_LEAST, 1e18)), seconds=seconds + band * SECONDS_A_BAND_CELL[kind]
     )
+
+
+def _area(proxy: ProxySetup, mesh: Mesh | None) -> float:
+    """Return the area of the proxy's surface in square scene units, or somewhat more."""
+    if mesh is not None:
+        return 0.5 * float(np.linalg.norm(crosses(mesh.vertices, mesh.faces), axis=1).sum())
+    w, h, d = proxy.extent
+    if proxy.kind == "plane":
+        return w * h
+    if proxy.kind == "cylinder":  # its rim at most that of the circle with the mean square radius
+        return math.pi * (w * d / 2 + h * math.sqrt((w * w + d * d) / 2))
+    if proxy.kind in ("sphere", "ellipsoid"):  # at most that of the sphere with the mean square of the pairs' products
+        return math.pi * math.sqrt(((w * h) ** 2 + (h * d) ** 2 + (d * w) ** 2) / 3)
+    return 2 * (w * h + h * d + d * w)
+
+
+def _vertices(plan: ShellPlan) -> float:
+    """Return about how many vertices the surface will have, as long as its relief is no steeper than most."""
+    area = _area(plan.proxy, plan.mesh)
+    if plan.proxy.kind == "plane":  # its bottom and the sides where the box cuts it
+        area = 2 * area + 2 * (plan.depth + plan.amplitude) * (plan.proxy.extent[0] + plan.proxy.extent[1])
+    return area / plan.edge / plan.edge * VERTICES_A_SQUARE
 
 
 def _fitting_edge(plan: ShellPlan, budget: int, tiles: bool) -> float:

@@ -146,30 +146,35 @@ def _joined(hypertexture: Hypertexture, pieces: list[Piece], least: float) -> Is
     _check_closed(names, np.concatenate([piece.open_sides for piece in pieces]))
     ends = np.cumsum([len(piece.names) for piece in pieces])
     keeps, dropped = _kept_parts(pieces, where, len(names), least)
+    # As long as all pieces together; what stays unused at the end takes no memory.
+    cells = np.empty((sum(len(piece.steps) for piece in pieces), 3))
+    normals = np.empty((len(cells), 3), np.float32)
+    faces = np.empty((sum(len(piece.faces) for piece in pieces), 3), np.uint32)
     # The number of a seam's vertex in the whole is given by the first piece that has it.
     number = np.full(len(names), -1)
-    cells_of, normals_of, faces_of, flat_of, count, before = [], [], [], [], 0, 0
+    count = used = 0
+    flat = []
+    pieces.reverse()
     for end, keep in zip(ends, keeps, strict=True):
-        piece = pieces.pop(0)
+        piece = pieces.pop()
         shared = where[end - len(piece.names) : end]
         mine = keep[piece.part]
         mine[piece.seam[number[shared] >= 0]] = False
         numbers = np.full(len(mine), -1)
-        numbers[mine] = count + np.arange(int(mine.sum()))
-        count += int(mine.sum())
+        new = slice(count, count := count + int(mine.sum()))
+        numbers[mine] = np.arange(new.start, count)
         fresh = number[shared] < 0
         number[shared[fresh]] = numbers[piece.seam[fresh]]
         numbers[piece.seam] = number[shared]
-        cells_of.append(piece.steps[mine].astype(np.float64) + np.asarray(piece.first[::-1]) + 0.5)
-        normals_of.append(piece.normals[mine[: len(piece.normals)]])
+        cells[new] = piece.steps[mine].astype(np.float64) + np.asarray(piece.first[::-1]) + 0.5
+        if len(piece.normals):
+            normals[new] = piece.normals[mine]
         kept = piece.faces[keep[piece.part[piece.faces[:, 0]]]]
-        flat_of.append(before + whole.flat(piece.steps, kept))
-        faces_of.append(numbers[kept].astype(np.uint32))
-        before += len(kept)
-    cells, faces, normals = np.concatenate(cells_of), np.concatenate(faces_of), np.concatenate(normals_of)
-    del cells_of, faces_of, normals_of
-    # Those back to back in the side between two blocks; within a block they are gone.
-    stays = whole.unpaired(faces, np.concatenate(flat_of))
+        flat.append(used + whole.flat(piece.steps, kept))
+        faces[used : (used := used + len(kept))] = numbers[kept]
+    cells, normals, faces = cells[:count], normals[:count], faces[:used]
+    # Faces back to back in the side between two blocks; within a block they are gone.
+    stays = whole.unpaired(faces, np.concatenate(flat))
     if not stays.all():
         faces = faces[stays]
     vertices = (cells * plan.edge + np.asarray(plan.lower)).astype(np.float32)
