@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import tracemalloc
 from dataclasses import replace
 from pathlib import Path
@@ -115,12 +116,13 @@ def test_a_level_an_exponent_and_crumbs_are_those_of_the_whole() -> None:
         assert (found.dropped > 0) == (least > 0)
 
 
+@pytest.mark.parametrize("size", [(2.0, 2.0, 0.2), (0.2, 2.0, 2.0)])
 @pytest.mark.parametrize("values", ["any", "0 and 1"])
-def test_any_densities_are_joined(values: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_any_densities_are_joined(values: str, size: tuple[float, float, float], monkeypatch: pytest.MonkeyPatch) -> None:
     # Random: every case of marching cubes at the seams; of 0 and 1 alone: faces back to back in the cubes' sides.
-    texture = ball(0.028)
+    texture = texture_of(plan_shell(ProxySetup(kind="box", size=size), 0.03, 0.09))
     shape = texture.shell.plan.shape
-    assert max(shape) > SIDE + 2
+    assert sorted(shape)[1] > SIDE + 2
     density = np.random.default_rng(4).random(shape, dtype=np.float32)
     if values == "0 and 1":
         density = (density > 0.5).astype(np.float32)
@@ -137,7 +139,7 @@ def test_any_densities_are_joined(values: str, monkeypatch: pytest.MonkeyPatch) 
     grid = DensityGrid(mi.Float(density.ravel()), shape, texture.shell.plan.lower, texture.shell.plan.edge)
     found = tiled_isosurface(texture, 0.5, least_island=0.0)
     expected = isosurface(grid, 0.5, texture.outward_at, least_island=0.0)
-    assert len(found.vertices) > 100_000
+    assert len(found.vertices) > 50_000
     assert_same(found, expected, texture.shell.plan.edge)
 
 
@@ -171,7 +173,7 @@ def test_what_is_left_out_has_no_surface(name: str, tmp_path: Path) -> None:
 def test_blocks_go_with_the_surface_and_not_with_the_volume() -> None:
     counts = [len(near_blocks(plan_of("sphere", Path(), 1.0 / n, 0.0, budget=1 << 50))) for n in (200, 400, 800)]
     # Of the volume it would be 8 times as many.
-    assert [b / a < 5 for a, b in zip(counts, counts[1:], strict=False)] == [True, True]
+    assert [b / a < 5 for a, b in itertools.pairwise(counts)] == [True, True]
     assert counts[-1] > 500
 
 
@@ -198,12 +200,13 @@ def test_no_array_is_as_large_as_the_grid(monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_other_blocks_and_other_numbers_compile_nothing(tmp_path: Path) -> None:
     for name in ("ellipsoid", "mesh"):
-        tiled_isosurface(texture_of(plan_of(name, tmp_path, 0.03)))
-        with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
-            dr.kernel_history_clear()
-            tiled_isosurface(texture_of(plan_of(name, tmp_path, 0.025, 0.12)))
-            kernels = [entry for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT]
-        assert len(kernels) > 8
+        first, second = (texture_of(plan_of(name, tmp_path, *numbers)) for numbers in ((0.03,), (0.025, 0.12)))
+        for texture in (first, second):
+            with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
+                dr.kernel_history_clear()
+                baked = sum(1 for _ in tiled_surface._baked(texture, near_blocks(texture.shell.plan)))
+                kernels = [entry for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT]
+        assert len(kernels) > baked > 4
         assert all(entry["cache_hit"] for entry in kernels)
 
 
@@ -221,7 +224,7 @@ def test_the_plan_says_what_tiles_take() -> None:
     assert plan.byte_count < 2 << 30
     assert plan.byte_count < 4 * plan.cells / 2
     assert plan.seconds > 0.01 * plan.blocks
-    finer = plan_of("sphere", Path(), 0.001, tiles=True, budget=1 << 50)
+    finer = plan_of("sphere", Path(), 0.001, tiles=True, budget=10**10)
     assert 3.5 < (finer.byte_count - 2e8) / (plan.byte_count - 2e8) < 4.5  # as the surface
     assert plan_of("sphere", Path(), 0.05, tiles=True).blocks == 0  # small enough as a whole
 

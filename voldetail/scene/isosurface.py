@@ -22,6 +22,7 @@ from skimage.measure import marching_cubes
 from voldetail.backend import mitsuba
 from voldetail.errors import InputError
 from voldetail.scene.density_grid import DensityGrid
+from voldetail.scene.topology import crosses
 
 LEAST_ISLAND = 1e-4
 """Share of the volume of the largest body below which a body that floats free, or a bubble, is dropped: crumbs of a few cells."""
@@ -121,7 +122,7 @@ def march(density: NDArray[np.float32], level: float) -> tuple[NDArray[np.float6
     mesh.merge_vertices()
     mesh.update_faces(mesh.nondegenerate_faces(height=0.0))
     steps, faces = np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int64)
-    mesh.update_faces(unpaired(faces, flat(steps, faces)))
+    mesh.update_faces(unpaired(steps, faces, flat(steps, faces)))
     mesh.remove_unreferenced_vertices()
     return np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int64)
 
@@ -132,12 +133,26 @@ def flat(steps: NDArray[Any], faces: NDArray[Any]) -> NDArray[np.int64]:
     return np.flatnonzero(((a == b) & (b == c) & (a == np.floor(a))).any(axis=1))
 
 
-def unpaired(faces: NDArray[Any], chosen: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Return which ``faces`` (F, 3) stay where of the ``chosen`` ones those back to back are dropped: nothing is between."""
+def unpaired(steps: NDArray[np.float64], faces: NDArray[Any], chosen: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return which ``faces`` (F, 3) stay where of the ``chosen``, `flat` ones those back to back are dropped.
+
+    Both cubes close the side between them, each as it likes, with nothing between: its edges would have four faces.
+    """
     keep = np.ones(len(faces), dtype=bool)
-    if len(chosen):
-        _, same, count = np.unique(np.sort(faces[chosen], axis=1), axis=0, return_inverse=True, return_counts=True)
-        keep[chosen[count[same.reshape(-1)] == 2]] = False
+    if not len(chosen):
+        return keep
+    corners = steps[faces[chosen]]
+    low = np.floor(corners.min(axis=1))
+    axis = ((corners == corners[:, :1]).all(axis=1) & (corners[:, 0] == low)).argmax(axis=1)
+    _, side = np.unique(np.column_stack([low, axis]), axis=0, return_inverse=True)
+    side = side.reshape(-1)
+    count = int(side.max()) + 1
+    facing = crosses(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3))[np.arange(len(chosen)), axis]
+    ahead, behind = (np.bincount(side[way], minlength=count) for way in (facing > 0, facing < 0))
+    used = np.unique(np.column_stack([np.repeat(side, 3), faces[chosen].reshape(-1)]), axis=0)[:, 0]
+    # n triangles make a polygon of n + 2 vertices: the other n, facing back, make the same one.
+    both = (ahead == behind) & (np.bincount(used, minlength=count) == ahead + 2)
+    keep[chosen[both[side]]] = False
     return keep
 
 

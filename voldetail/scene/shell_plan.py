@@ -41,8 +41,8 @@ VERTICES_A_SQUARE = 3.0
 """Vertices of a relief for each square of an edge's side of the bare surface. Without relief there are 1.5; on a sphere of 256
 cells, with noise of scale 4 and amplitudes of 0.1 and 0.2, 1.8 and 2.6; of scale 16, as steep as few are, 3.6 and 7."""
 
-BYTES_A_TILED_VERTEX = 220.0
-"""At the peak, measured with 1 to 2 million vertices; BYTES_AT_LEAST holds what one block needs."""
+BYTES_A_TILED_VERTEX = 200.0
+"""At the peak, from 0.3 to 2.3 million vertices; BYTES_AT_LEAST holds what one block needs."""
 
 BYTES_A_BLOCK = 100.0
 """Of all the grid's, while those are found that the surface can reach."""

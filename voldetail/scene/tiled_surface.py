@@ -166,7 +166,7 @@ def _joined(hypertexture: Hypertexture, pieces: list[Piece], least: float) -> Is
         fresh = number[shared] < 0
         number[shared[fresh]] = numbers[piece.seam[fresh]]
         numbers[piece.seam] = number[shared]
-        cells[new] = piece.steps[mine].astype(np.float64) + np.asarray(piece.first[::-1]) + 0.5
+        cells[new] = piece.steps[mine].astype(np.float64) + np.asarray(piece.first[::-1])
         if len(piece.normals):
             normals[new] = piece.normals[mine]
         kept = piece.faces[keep[piece.part[piece.faces[:, 0]]]]
@@ -174,9 +174,10 @@ def _joined(hypertexture: Hypertexture, pieces: list[Piece], least: float) -> Is
         faces[used : (used := used + len(kept))] = numbers[kept]
     cells, normals, faces = cells[:count], normals[:count], faces[:used]
     # Faces back to back in the side between two blocks; within a block they are gone.
-    stays = whole.unpaired(faces, np.concatenate(flat))
+    stays = whole.unpaired(cells, faces, np.concatenate(flat))
     if not stays.all():
         faces = faces[stays]
+    cells += 0.5
     vertices = (cells * plan.edge + np.asarray(plan.lower)).astype(np.float32)
     if plan.mesh is None:
         normals = whole.outward_normals(vertices, hypertexture.outward_at).astype(np.float32)
