@@ -119,7 +119,10 @@ def _mesh_reaches(plan: ShellPlan) -> Reaches:
 def mesh_blocks(plan: ShellPlan, blocks: NDArray[np.int64]) -> Iterator[NDArray[np.float32]]:
     """Yield for each of ``blocks`` (see `near_blocks`) the signed distances to the mesh, in scene units.
 
-    They are (n, n, n) with n = SIDE + 1 + 2 HALO: HALO cubes more on each side than the block's middles.
+    They are (n, n, n) with n = SIDE + 1 + 2 HALO: HALO cubes more on each side than the block's middles. They are exact: on
+    a grid of twice (four times) the edge, interpolated, they would take an eighth of the time, and be up to 0.8 (1.7) cubes
+    off at the edges of a box, with normals 17 (31) degrees off in one place of a hundred about it; on a torus of 128 cells
+    0.1 (0.25) cubes and 2.7 (4.2) degrees, which shows as facets of that size.
     """
     assert plan.mesh is not None
     points, faces = mesh_in_cubes(plan), plan.mesh.faces

@@ -47,7 +47,7 @@ BYTES_A_TILED_VERTEX = 200.0
 BYTES_A_BLOCK = 100.0
 """Of all the grid's, while those are found that the surface can reach."""
 
-SECONDS_A_BLOCK = {"simple": 0.03, "mesh": 0.3}
+SECONDS_A_BLOCK = {"simple": 0.03, "mesh": 0.1}
 SECONDS_A_TILED_VERTEX = 2e-6
 """As above."""
 

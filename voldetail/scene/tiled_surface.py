@@ -66,7 +66,7 @@ def tiled_isosurface(
     count, densest, most = 0, 0.0, max(budget - BYTES_AT_LEAST, 0.0) / BYTES_A_TILED_VERTEX
     for done, (first, texture, density) in enumerate(_baked(hypertexture, blocks), 1):
         densest = max(densest, float(density.max()))
-        if density.min() <= level < density.max():
+        if density.min() < level < density.max():
             pieces.append(_piece(texture, first, density, level))
             count += len(pieces[-1].steps)
         if count > most:
