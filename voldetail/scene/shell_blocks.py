@@ -90,15 +90,13 @@ def _simple_reaches(plan: ShellPlan) -> Reaches:
         middle = (first[:, ::-1] + SIDE / 2 + 0.5) * plan.edge + np.asarray(plan.lower)
         own = (middle - np.asarray(plan.proxy.position)) @ turn
         s = distance(tuple(mi.Float(np.ascontiguousarray(own[:, axis])) for axis in range(3)))[0].numpy().astype(np.float64)
-        # Full density all through, unless the grid or the slab ends in the block.
-        full = (first >= 0).all(axis=1) & (first + SIDE < np.asarray(plan.shape)).all(axis=1)
+        full = s < -plan.thickness / 2 - radius  # all through, unless a slab ends in the block
         beside = np.zeros(len(first), dtype=bool)
         if plan.proxy.kind == "plane":
             w, h = plan.proxy.extent[0] / 2, plan.proxy.extent[1] / 2
             over = np.maximum(np.maximum(np.abs(own[:, 0]) - w, np.abs(own[:, 1]) - h), -plan.depth - own[:, 2])
             full &= over < -radius
             beside = over > radius
-        full &= s < -plan.thickness / 2 - radius
         return np.asarray((s < plan.thickness / 2 + plan.amplitude + radius) & ~full & ~beside)
 
     return reaches
