@@ -15,54 +15,22 @@ import trimesh
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from tests.unit.tiled_objects import OBJECTS, SMALL, ball, plan_of, texture_of
 from voldetail.backend import mitsuba
 
 mi: ModuleType = mitsuba()  # before Dr.Jit is imported, which would pick an LLVM of its own
 
 import drjit as dr  # noqa: E402
 
-from voldetail.detail import Detail  # noqa: E402
 from voldetail.errors import InputError, VoldetailError  # noqa: E402
 from voldetail.scene import tiled_surface  # noqa: E402
 from voldetail.scene.density_grid import DensityGrid  # noqa: E402
 from voldetail.scene.hypertexture import Hypertexture  # noqa: E402
 from voldetail.scene.isosurface import Isosurface, isosurface  # noqa: E402
 from voldetail.scene.setup import ProxySetup  # noqa: E402
-from voldetail.scene.shell import make_shell  # noqa: E402
 from voldetail.scene.shell_blocks import SIDE, near_blocks  # noqa: E402
-from voldetail.scene.shell_plan import BYTES_A_TILED_VERTEX, DEFAULT_BUDGET, ShellPlan, plan_shell  # noqa: E402
+from voldetail.scene.shell_plan import BYTES_A_TILED_VERTEX, plan_shell  # noqa: E402
 from voldetail.scene.tiled_surface import tiled_isosurface  # noqa: E402
-
-SMALL = 240_000_000
-"""Bytes: enough for tiles, too little for the grid as a whole."""
-
-PLACED: dict[str, Any] = {"rotation": (20, 30, 10), "position": (0.1, 0.2, -0.3)}
-OBJECTS: dict[str, dict[str, Any]] = {
-    "sphere": {"kind": "sphere", "position": (0.1, 0.2, -0.3)},
-    "ellipsoid": {"kind": "ellipsoid", "size": (2.0, 1.4, 1.0), **PLACED},
-    "box": {"kind": "box", "size": (2.0, 1.6, 1.2), **PLACED},
-    "cylinder": {"kind": "cylinder", "size": (1.2, 2.0, 1.2), **PLACED},
-    "slab": {"kind": "plane", "size": (1.7, 1.5, 0.0)},
-    "thick slab": {"kind": "plane", "size": (1.9, 1.9, 1.9), **PLACED},
-    "mesh": {"kind": "mesh", **PLACED},
-}
-
-
-def plan_of(name: str, folder: Path, edge: float = 0.02, amplitude: float = 0.1, **more: Any) -> ShellPlan:
-    fields = dict(OBJECTS[name])
-    if name == "mesh":
-        fields["mesh"] = folder / "torus.ply"
-        trimesh.creation.torus(0.7, 0.3, major_sections=48, minor_sections=24).export(fields["mesh"])
-    return plan_shell(ProxySetup(**fields), edge, 3 * edge, amplitude, **more)
-
-
-def texture_of(plan: ShellPlan, scale: float = 4.0, exponent: float = 1.0) -> Hypertexture:
-    relief = {"amplitude": plan.amplitude}
-    return Hypertexture(make_shell(plan), Detail.model_validate({"noise": {"scale": scale}, "relief": relief}), exponent)
-
-
-def ball(edge: float = 0.02, **more: Any) -> Hypertexture:
-    return texture_of(plan_of("sphere", Path(), edge, **more))
 
 
 def whole(texture: Hypertexture) -> Isosurface:
@@ -215,38 +183,6 @@ def test_progress_is_told_block_by_block() -> None:
     tiled_isosurface(texture, on_progress=lambda done, total: told.append((done, total)))
     count = len(near_blocks(texture.shell.plan))
     assert told == [(done, count) for done in range(1, count + 1)]
-
-
-def test_the_plan_says_what_tiles_take() -> None:
-    plan = plan_of("sphere", Path(), 0.002, tiles=True)
-    assert plan.blocks == len(near_blocks(plan))
-    assert plan.sentence.startswith(f"1105 x 1105 x 1105 cells of 0.002 scene units, in at most {plan.blocks} of 5832 blocks, ")
-    assert plan.byte_count < 2 << 30
-    assert plan.byte_count < 4 * plan.cells / 2
-    assert plan.seconds > 0.01 * plan.blocks
-    finer = plan_of("sphere", Path(), 0.001, tiles=True, budget=10**10)
-    assert 3.5 < (finer.byte_count - 2e8) / (plan.byte_count - 2e8) < 4.5  # as the surface
-    assert plan_of("sphere", Path(), 0.05, tiles=True).blocks == 0  # small enough as a whole
-
-
-def test_who_needs_the_grid_is_refused_as_ever(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=rf"more than the {DEFAULT_BUDGET / 2**20:.0f} MB allowed: use an edge of at least"):
-        plan_of("sphere", tmp_path, 0.002)
-    for name in ("sphere", "mesh"):
-        texture = texture_of(plan_of(name, tmp_path, budget=SMALL, tiles=True))
-        for bake in (texture.bake, texture.shell.bake):
-            with pytest.raises(InputError, match="planned for its surface by tiles alone: plan it without tiles to fill it"):
-                bake()
-    with pytest.raises(InputError, match="known block by block only"):
-        texture.density_at((mi.Float(0.0), mi.Float(0.0), mi.Float(0.0)))
-
-
-def test_what_tiles_cannot_do_either_is_refused_with_advice(tmp_path: Path) -> None:
-    for edge in (1e-4, 1e-200):
-        with pytest.raises(InputError, match=r"needs \d+ MB by tiles, more than the 2048 MB allowed: use an edge of") as refused:
-            plan_of("sphere", tmp_path, edge, 0.02, tiles=True)
-        fitting = float(str(refused.value).split("use an edge of at least ")[1].split(" ")[0].rstrip(",:"))
-        assert 0 < plan_of("sphere", tmp_path, fitting, 0.02, tiles=True).byte_count <= 2 << 30
 
 
 def test_a_surface_that_outgrows_its_budget_is_refused_on_the_way() -> None:
