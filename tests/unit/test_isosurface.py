@@ -156,6 +156,19 @@ def test_densities_at_the_level_leave_no_faces_without_area() -> None:
     mesh_of(isosurface(grid_of(density)))
 
 
+@pytest.mark.parametrize("values", ["a saddle", "0 and 1"])
+def test_two_cubes_that_close_the_same_side_leave_it_open(values: str) -> None:
+    # Marching cubes closes a side with a saddle from both of its cubes, with the same faces or across; found by search.
+    density = np.array([
+        [[0.2941, 0.9486, 0.9996], [0.1466, 0.8063, 0.4606]], [[0.5429, 0.3256, 0.8351], [0.9078, 0.1163, 0.1797]],
+    ])  # fmt: skip
+    if values == "0 and 1":
+        density = (np.random.default_rng(3).random((20, 20, 20)) > 0.5).astype(np.float64)
+    else:
+        density = np.pad(density, 2)
+    mesh_of(isosurface(grid_of(density), 0.5, least_island=0.0))
+
+
 def test_noise_of_every_kind_is_closed() -> None:
     mesh_of(isosurface(grid_of(np.random.default_rng(8).random((20, 21, 22))), 0.5, least_island=0.0))
 

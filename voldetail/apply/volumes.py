@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from voldetail.detail import Detail
@@ -10,8 +11,9 @@ from voldetail.errors import InputError
 from voldetail.scene.isosurface import isosurface
 from voldetail.scene.lamp import Lamp
 from voldetail.scene.setup import ProxySetup
-from voldetail.scene.shell_plan import ShellPlan
+from voldetail.scene.shell_plan import OverBudget, ShellPlan
 from voldetail.scene.surface import VolumeSurface
+from voldetail.scene.tiled_surface import tiled_isosurface
 from voldetail.scene.traced_medium import TracedVolume
 from voldetail.scene.view import View
 from voldetail.scene.volume import MEDIUM_PIXELS, SOLID_PIXELS, Volume, medium_of
@@ -20,13 +22,12 @@ BUDGET = 2 << 30
 """Bytes that a volume may take; where cells of the wanted size take more, they become larger."""
 
 MARCHED_BYTES = 80
-SOLID_BYTES = 32
-"""For each cell, at the peak: gradients, depths and copies of a marched grid (1.3 GB for 256 cells a side), and those of the
-iso-surface."""
+"""For each cell of a marched grid at the peak, gradients, depths and copies: 1.3 GB for 256 cells a side."""
 
 COARSER = 1.05
 
 Tell = Callable[[str], None]
+Progress = Callable[[int, int], None]
 
 
 def quiet(sentence: str) -> None:
@@ -43,15 +44,19 @@ def place(
     """
     solid = detail.medium is None
     wanted = edge or (SOLID_PIXELS if solid else MEDIUM_PIXELS) * view.pixel
-    each, used = SOLID_BYTES if solid else MARCHED_BYTES, wanted
+    used = wanted
     while True:
-        volume = Volume(proxy, view, edge=used, scale=scale, whole_plane=whole_plane, budget=1 << 62)
-        plan = planned(volume, detail)
-        if plan.cells * each <= BUDGET:
+        volume = Volume(proxy, view, edge=used, scale=scale, whole_plane=whole_plane, budget=BUDGET, tiles=solid)
+        try:
+            plan = planned(volume, detail)
+        except OverBudget:
+            used *= 1.25
+            continue
+        over = plan.cells * MARCHED_BYTES / BUDGET
+        if solid or over <= 1.0:
             break
-        used *= max(COARSER, (plan.cells * each / BUDGET) ** (1 / 3))
-    tell(_sentence(plan, plan.cells * each, used / wanted))
-    volume.budget = BUDGET
+        used *= max(COARSER, over ** (1 / 3))
+    tell(_sentence(plan, plan.byte_count if solid else plan.cells * MARCHED_BYTES, used / wanted))
     return volume
 
 
@@ -62,19 +67,25 @@ def planned(volume: Volume, detail: Detail) -> ShellPlan:
 
 
 def _sentence(plan: ShellPlan, byte_count: int, coarser: float) -> str:
-    nz, ny, nx = plan.shape
-    words = f"{nx} x {ny} x {nz} cells, up to {byte_count / 2**20:.0f} MB, about {max(plan.seconds, 1.0):.0f} s to fill them"
+    words = replace(plan, byte_count=byte_count).sentence
     if coarser > 1.0:
-        words += f"; they are {coarser:.2g} times as large as wanted, to stay within {BUDGET / 2**20:.0f} MB"
+        words += f"; cells are {coarser:.2g} times as large as wanted, to stay within {BUDGET / 2**20:.0f} MB"
     return words
 
 
 def solid_surface(
-    detail: Detail, volume: Volume, *, bsdf: dict[str, Any] | None, emitters: dict[str, Any] | None = None
+    detail: Detail, volume: Volume, *, bsdf: dict[str, Any] | None, emitters: dict[str, Any] | None = None,
+    on_progress: Progress = lambda done, total: None,
 ) -> VolumeSurface:
-    """Return the surface of the solid ``detail`` on ``volume`` in a Mitsuba scene."""
+    """Return the surface of the solid ``detail`` on ``volume`` in a Mitsuba scene.
+
+    Where the grid would be too large it is made by tiles, of which ``on_progress`` gets how many are done.
+    """
     texture = volume.texture(detail)
-    surface = isosurface(texture.bake(), texture.level, texture.outward_at, budget=BUDGET)
+    if texture.shell.plan.blocks:
+        surface = tiled_isosurface(texture, on_progress=on_progress, budget=BUDGET)
+    else:
+        surface = isosurface(texture.bake(), texture.level, texture.outward_at, budget=BUDGET)
     one_sided = volume.proxy.kind == "plane"
     return VolumeSurface(texture, surface, volume.view, one_sided_sky=one_sided, bsdf=bsdf, emitters=emitters)
 

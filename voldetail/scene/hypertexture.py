@@ -23,6 +23,7 @@ and islands may float free. With R constant along n this would be displacement.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -31,7 +32,7 @@ import drjit as dr
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
 from voldetail.errors import InputError
-from voldetail.scene.density_grid import DensityGrid
+from voldetail.scene.density_grid import DensityGrid, split
 from voldetail.scene.relief import SOLID, relief_at
 from voldetail.scene.shell import Points, Shell
 
@@ -99,23 +100,52 @@ class Hypertexture:
         return tuple(slope * v for v in outward)
 
     def bake(self) -> DensityGrid:
-        """Return the density on the cubes of the shell's plan; the noise is computed only where it can matter."""
+        """Return the density on the cubes of the shell's plan; the noise is computed only where it can matter.
+
+        Raises InputError where the plan is for tiles alone.
+        """
+        shell = self.shell
+        shell.plan.check_dense()
+        density = dr.zeros(mitsuba().Float, shell.plan.cells)
+        for index in shell.tiles():
+            self._fill(density, index, lambda index: split(index, shell.plan.shape))
+        return shell.grid(density)
+
+    def bake_block(self, first: tuple[int, int, int], side: int, distance: Any = None) -> Any:
+        """Return the densities of ``side`` cubed cells of the plan's grid from cell ``first`` (z, y, x) on, x fastest.
+
+        They are those of `bake` to the bit, and 0 beside the grid, where ``first`` may lie too. distance: s at the cells'
+        middles, for a shell that does not know it; else the shell's.
+        """
+        mi = mitsuba()
+        density = dr.zeros(mi.Float, side**3)
+        start = [dr.opaque(mi.Int32, number) for number in reversed(first)]
+
+        def cells_of(index: Any) -> Points:
+            return tuple(mi.Int32(cell) + low for cell, low in zip(split(index, (side, side, side)), start, strict=True))
+
+        self._fill(density, dr.arange(mi.UInt32, side**3), cells_of, distance)
+        return density
+
+    def _fill(self, density: Any, index: Any, cells_of: Callable[[Any], Points], distances: Any = None) -> None:
+        """Write the density of the cells ``cells_of(index)`` to the places ``index`` of ``density``."""
         mi = mitsuba()
         shell, half = self.shell, self.shell.plan.thickness / 2
-        density = dr.zeros(mi.Float, shell.plan.cells)
         lowest, highest = dr.opaque(mi.Float, -half), dr.opaque(mi.Float, half + self.amplitude)
-        for index in shell.tiles():
-            own = shell.own(shell.middles(index))
-            distance, within = shell.distance(own)[0], shell.within(own)
-            dr.scatter(density, dr.select(within & (distance <= lowest), mi.Float(1.0), 0.0), index)
-            # Below the shell a shift only goes deeper; above it the highest relief does not reach.
-            near: Any = dr.compress((distance > lowest) & (distance < highest) & within)
+        cells = cells_of(index)
+        own = shell.own(shell.middles_of(cells))
+        distance = shell.distance(own)[0] if distances is None else dr.gather(mi.Float, distances, index)
+        within = shell.within(own) & shell.in_box(cells)
+        dr.scatter(density, dr.select(within & (distance <= lowest), mi.Float(1.0), 0.0), index)
+        # Below the shell a shift only goes deeper; above it the highest relief does not reach.
+        near: Any = dr.compress((distance > lowest) & (distance < highest) & within)
+        dr.eval(density)
+        if dr.width(near):
+            chosen = dr.gather(mi.UInt32, index, near)
+            own = shell.own(shell.middles_of(cells_of(chosen)))
+            distance = shell.distance(own)[0] if distances is None else dr.gather(mi.Float, distances, chosen)
+            dr.scatter(density, self._transfer(shell.profile(distance - self._relief(own))), chosen)
             dr.eval(density)
-            if dr.width(near):
-                chosen = dr.gather(mi.UInt32, index, near)
-                dr.scatter(density, self.density_at(shell.middles(chosen)), chosen)
-                dr.eval(density)
-        return shell.grid(density)
 
     def _height(self, own: Points) -> tuple[Any, Points]:
         distance, normal = self.shell.distance(own)

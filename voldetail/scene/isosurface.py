@@ -22,6 +22,7 @@ from skimage.measure import marching_cubes
 from voldetail.backend import mitsuba
 from voldetail.errors import InputError
 from voldetail.scene.density_grid import DensityGrid
+from voldetail.scene.topology import crosses
 
 LEAST_ISLAND = 1e-4
 """Share of the volume of the largest body below which a body that floats free, or a bubble, is dropped: crumbs of a few cells."""
@@ -74,14 +75,9 @@ def isosurface(
     itself, where matter is cut, have the normals of their faces. Bodies of less than ``least_island`` times the volume of
     the largest are dropped. Raises InputError where there is no surface, or where it takes more than ``budget`` bytes.
     """
-    if not 0.0 < level < 1.0:
-        raise InputError(f"The level of a surface is {level:g}; it has to be over 0 and under 1.")
+    check_level(level)
     density = np.pad(grid.array(), 1)  # nothing outside the box: matter that reaches it is closed there
-    if not density.max() > level:
-        raise InputError(
-            f"There is no surface at the level {level:g}: the densest point of the grid has {float(density.max()):.3g}; use a"
-            " lower level, a finer grid or a thicker object."
-        )
+    check_densest(float(density.max()), level)
     count, byte_count = surface_cost(grid, level)
     if byte_count > budget:
         raise InputError(
@@ -89,46 +85,122 @@ def isosurface(
             f" bake the density with an edge of {grid.edge * (byte_count / budget) ** 0.5:.3g} scene units or more, or allow"
             f" {byte_count / 2**20:.0f} MB."
         )
+    corners, faces = march(density, level)
+    cells, faces, dropped = _without_crumbs(corners - 0.5, faces, least_island)
+    vertices = (cells * grid.edge + np.asarray(grid.lower)).astype(np.float32)
+    normals = outward_normals(vertices, outward) if outward is not None else _differences(density, cells)
+    mend_normals(normals, cells, faces, grid.shape)
+    return Isosurface(vertices, faces.astype(np.uint32), normals.astype(np.float32), dropped)
+
+
+def check_level(level: float) -> None:
+    """Refuse a ``level`` that no density can pass."""
+    if not 0.0 < level < 1.0:
+        raise InputError(f"The level of a surface is {level:g}; it has to be over 0 and under 1.")
+
+
+def check_densest(densest: float, level: float) -> None:
+    """Refuse densities that are nowhere over ``level``."""
+    if not densest > level:
+        raise InputError(
+            f"There is no surface at the level {level:g}: the densest point of the grid has {densest:.3g}; use a"
+            " lower level, a finer grid or a thicker object."
+        )
+
+
+def march(density: NDArray[np.float32], level: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return the vertices (V, 3), x first, in steps from the first of the densities (nz, ny, nx), and the faces (F, 3).
+
+    Matter that meets the grid's side is left open there. ``density`` is changed where it comes close to ``level``, which it
+    has to pass somewhere.
+    """
     close = np.abs(density - level) < CLEARANCE
     density[close] = level + CLEARANCE * np.where(density[close] < level, -1.0, 1.0)
     # scikit-image's "descent" is dense matter inside; its axes are ours backwards, and it winds its faces for that order.
     corners, faces, _, _ = marching_cubes(density, level, gradient_direction="descent")
-    mesh = trimesh.Trimesh(corners[:, ::-1].astype(np.float64) - 0.5, faces, process=False)
+    mesh = trimesh.Trimesh(corners[:, ::-1].astype(np.float64), faces, process=False)
     mesh.merge_vertices()
     mesh.update_faces(mesh.nondegenerate_faces(height=0.0))
+    steps, faces = np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int64)
+    mesh.update_faces(unpaired(steps, faces, flat(steps, faces)))
     mesh.remove_unreferenced_vertices()
-    cells, faces, dropped = _without_crumbs(np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int64), least_island)
-    mesh = trimesh.Trimesh(cells, faces, process=False)
-    vertices = (cells * grid.edge + np.asarray(grid.lower)).astype(np.float32)
-    normals = _normals(vertices, outward) if outward is not None else _differences(density, cells)
-    upper = np.asarray(grid.shape[::-1]) - 0.5
-    cut = (cells < 0.5).any(axis=1) | (cells > upper).any(axis=1) | ~(np.linalg.norm(normals, axis=1) > 0.0)
-    normals[cut] = np.asarray(mesh.vertex_normals)[cut]
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    return Isosurface(vertices, faces.astype(np.uint32), normals.astype(np.float32), dropped)
+    return np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int64)
+
+
+def flat(steps: NDArray[Any], faces: NDArray[Any]) -> NDArray[np.int64]:
+    """Return the numbers of the faces that lie in a side of a cube. Its neighbour may close the same side, facing back."""
+    a, b, c = (steps[faces[:, corner]] for corner in range(3))
+    return np.flatnonzero(((a == b) & (b == c) & (a == np.floor(a))).any(axis=1))
+
+
+def unpaired(steps: NDArray[np.float64], faces: NDArray[Any], chosen: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return which ``faces`` (F, 3) stay where of the ``chosen``, `flat` ones those back to back are dropped.
+
+    Both cubes close the side between them, each as it likes, with nothing between: its edges would have four faces.
+    """
+    keep = np.ones(len(faces), dtype=bool)
+    if not len(chosen):
+        return keep
+    corners = steps[faces[chosen]]
+    low = np.floor(corners.min(axis=1))
+    axis = ((corners == corners[:, :1]).all(axis=1) & (corners[:, 0] == low)).argmax(axis=1)
+    _, side = np.unique(np.column_stack([low, axis]), axis=0, return_inverse=True)
+    side = side.reshape(-1)
+    count = int(side.max()) + 1
+    facing = crosses(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3))[np.arange(len(chosen)), axis]
+    ahead, behind = (np.bincount(side[way], minlength=count) for way in (facing > 0, facing < 0))
+    used = np.unique(np.column_stack([np.repeat(side, 3), faces[chosen].reshape(-1)]), axis=0)[:, 0]
+    # n triangles make a polygon of n + 2 vertices: the other n, facing back, make the same one.
+    both = (ahead == behind) & (np.bincount(used, minlength=count) == ahead + 2)
+    keep[chosen[both[side]]] = False
+    return keep
+
+
+def bodies(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """Return each vertex's connected part, and each part's signed volume: an open part's share in that of its body."""
+    ends = np.concatenate([faces[:, :2], faces[:, 1:]])
+    graph = sparse.coo_matrix((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(len(vertices),) * 2)
+    count, label = csgraph.connected_components(graph, directed=False)
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    volume = np.bincount(label[faces[:, 0]], np.einsum("ij,ij->i", a, np.cross(b, c)) / 6, minlength=count)
+    return np.asarray(label), np.asarray(volume, dtype=np.float64)
+
+
+def large_enough(volume: NDArray[np.float64], least: float) -> NDArray[np.bool_]:
+    """Return which bodies and bubbles have at least ``least`` of the largest's volume."""
+    return np.asarray(np.abs(volume) >= least * np.abs(volume).max())
 
 
 def _without_crumbs(
     vertices: NDArray[np.float64], faces: NDArray[np.int64], least: float
 ) -> tuple[NDArray[np.float64], NDArray[np.int64], int]:
     """Return the mesh without the bodies and bubbles of less than ``least`` of the largest's volume, and how many they were."""
-    ends = np.concatenate([faces[:, :2], faces[:, 1:]])
-    graph = sparse.coo_matrix((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(len(vertices),) * 2)
-    count, label = csgraph.connected_components(graph, directed=False)
-    body = label[faces[:, 0]]
-    a, b, c = (vertices[faces[:, i]] for i in range(3))
-    volume = np.abs(np.bincount(body, np.einsum("ij,ij->i", a, np.cross(b, c)) / 6, minlength=count))
-    keep = volume >= least * volume.max()
+    label, volume = bodies(vertices, faces)
+    keep = large_enough(volume, least)
     if keep.all():
         return vertices, faces, 0
-    kept = faces[keep[body]]
+    kept = faces[keep[label[faces[:, 0]]]]
     used, compact = np.unique(kept, return_inverse=True)
     return vertices[used], compact.reshape(-1, 3).astype(np.int64), int(np.count_nonzero(~keep))
 
 
-def _normals(
+def mend_normals(
+    normals: NDArray[Any], cells: NDArray[np.float64], faces: NDArray[Any], shape: tuple[int, int, int]
+) -> None:
+    """Make ``normals`` (V, 3) unit vectors, on the box and where they are 0 the mean of the faces'; ``cells`` in cubes."""
+    upper = np.asarray(shape[::-1]) - 0.5
+    poor = (cells < 0.5).any(axis=1) | (cells > upper).any(axis=1) | ~(np.linalg.norm(normals, axis=1) > 0.0)
+    around = faces[poor[faces].any(axis=1)]
+    used, compact = np.unique(around, return_inverse=True)
+    mean = trimesh.Trimesh(cells[used], compact.reshape(-1, 3), process=False).vertex_normals if len(used) else cells[:0]
+    normals[used[poor[used]]] = np.asarray(mean)[poor[used]]
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def outward_normals(
     vertices: NDArray[np.float32], outward: Callable[[tuple[Any, ...]], tuple[Any, ...]]
 ) -> NDArray[np.float64]:
+    """Return ``outward`` at ``vertices`` (V, 3) as unit vectors; 0 where it has no direction."""
     mi = mitsuba()
     normals = np.empty((len(vertices), 3))
     for start in range(0, len(vertices), TILE):

@@ -16,7 +16,7 @@ or two) and the box leaves room for A above the shell.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import drjit as dr
@@ -26,9 +26,10 @@ from numpy.typing import NDArray
 from voldetail.backend import mitsuba
 from voldetail.errors import InputError
 from voldetail.scene import signed_distance
-from voldetail.scene.density_grid import DensityGrid, middles
+from voldetail.scene.density_grid import DensityGrid, split
 from voldetail.scene.mesh_distance import mesh_distance
 from voldetail.scene.proxy import rotation_matrix
+from voldetail.scene.shell_blocks import simple_distance
 from voldetail.scene.shell_plan import ShellPlan
 
 TILE = 1 << 20
@@ -87,7 +88,24 @@ class Shell:
 
     def middles(self, index: Any) -> Points:
         """Return the middles of the cubes with the numbers ``index`` (x fastest), in scene units."""
-        return middles(index, self.plan.shape, self.plan.lower, self.plan.edge)
+        return self.middles_of(split(index, self.plan.shape))
+
+    def middles_of(self, cells: Points) -> Points:
+        """Return the middles of ``cells`` (column x, row y, slice z of the whole grid, or beside it), in scene units."""
+        float_type: Any = mitsuba().Float
+        edge = dr.opaque(float_type, self.plan.edge)
+        # From the numbers in the whole grid: a block's middles are those of the grid to the bit.
+        return tuple(
+            dr.fma(float_type(cell) + 0.5, edge, dr.opaque(float_type, float(low)))
+            for cell, low in zip(cells, self.plan.lower, strict=True)
+        )
+
+    def in_box(self, cells: Points) -> Any:
+        """Return which of ``cells`` the plan's grid has."""
+        inside = True
+        for cell, count in zip(cells, reversed(self.plan.shape), strict=True):
+            inside &= (cell >= 0) & (cell < dr.opaque(type(cell), count))
+        return inside
 
     def tiles(self) -> list[Any]:
         """Return the numbers of the cubes, TILE at a time, not yet evaluated."""
@@ -107,7 +125,8 @@ class Shell:
         return DensityGrid(density, self.plan.shape, self.plan.lower, self.plan.edge)
 
     def bake(self) -> DensityGrid:
-        """Return d on the cubes of the plan."""
+        """Return d on the cubes of the plan. Raises InputError where the plan is for tiles alone."""
+        self.plan.check_dense()
         density = dr.zeros(mitsuba().Float, self.plan.cells)
         for index in self.tiles():
             dr.scatter(density, self.density_at(self.middles(index)), index)
@@ -121,18 +140,23 @@ def make_shell(plan: ShellPlan) -> Shell:
     Raises InputError where the shell is thicker than the object, so that nothing of it would have density 1.
     """
     proxy = plan.proxy
-    half = (proxy.extent[0] / 2, proxy.extent[1] / 2, proxy.extent[2] / 2)
-    distance: signed_distance.Distance
     turn = rotation_matrix(proxy.rotation)
-    if proxy.kind == "mesh":
-        distance = _mesh(plan, turn)
-    elif proxy.kind == "plane":
-        distance = signed_distance.plane()
-    elif proxy.kind in ("sphere", "ellipsoid"):
-        distance = signed_distance.ellipsoid(half)
-    else:
-        distance = (signed_distance.box if proxy.kind == "box" else signed_distance.cylinder)(half)
-    return Shell(plan, distance, turn)
+    if proxy.kind != "mesh":
+        return Shell(plan, simple_distance(proxy), turn)
+    return Shell(plan, _nowhere if plan.blocks else _mesh(plan, turn), turn)
+
+
+def on_block(shell: Shell, first: tuple[int, int, int], values: NDArray[np.float32]) -> Shell:
+    """Return ``shell`` with the distances ``values`` (nz, ny, nx) about a part of its grid from cube ``first`` (z, y, x) on."""
+    plan, mi = shell.plan, mitsuba()
+    x, y, z = (low + start * plan.edge for low, start in zip(plan.lower, reversed(first), strict=True))
+    nz, ny, nx = values.shape
+    in_scene = signed_distance.gridded(mi.Float(values.ravel()), (nz, ny, nx), (x, y, z), plan.edge)
+    return replace(shell, distance=signed_distance.moved(in_scene, shell.turn, plan.proxy.position))
+
+
+def _nowhere(points: Points) -> tuple[Any, Points]:
+    raise InputError("The distances to a mesh on a grid this fine are known block by block only: make its surface by tiles.")
 
 
 def _mesh(plan: ShellPlan, turn: NDArray[np.float64]) -> signed_distance.Distance:
@@ -142,13 +166,17 @@ def _mesh(plan: ShellPlan, turn: NDArray[np.float64]) -> signed_distance.Distanc
     # Two cubes more, for the differences that give n at the edge of the band.
     inner = plan.thickness / 2 + 2 * plan.edge
     values = mesh_distance(vertices, plan.mesh.faces, plan.lower, plan.shape, plan.edge, (inner, inner + plan.amplitude))
-    deepest = -float(values.min())
+    check_depth(plan, -float(values.min()))
+    mi = mitsuba()
+    in_scene = signed_distance.gridded(mi.Float(values.ravel()), plan.shape, plan.lower, plan.edge)
+    return signed_distance.moved(in_scene, turn, plan.proxy.position)
+
+
+def check_depth(plan: ShellPlan, deepest: float) -> None:
+    """Refuse a shell that leaves nothing solid in a mesh whose deepest point is ``deepest`` scene units below its surface."""
     if deepest < plan.thickness / 2:
         raise InputError(
             f"The shell is {plan.thickness:g} scene units thick, but the mesh {plan.proxy.mesh} nowhere reaches half of that"
             f" inside (its deepest point on the grid is {max(deepest, 0.0):.3g} below the surface), so nothing of it would be"
             f" solid: use a thickness under {2 * max(deepest, 0.0):.3g}, or a finer grid."
         )
-    mi = mitsuba()
-    in_scene = signed_distance.gridded(mi.Float(values.ravel()), plan.shape, plan.lower, plan.edge)
-    return signed_distance.moved(in_scene, turn, plan.proxy.position)

@@ -16,7 +16,7 @@ from voldetail.scene.marched import MarchedVolume
 from voldetail.scene.medium import Medium
 from voldetail.scene.setup import ProxySetup
 from voldetail.scene.shell import Shell, make_shell
-from voldetail.scene.shell_plan import DEFAULT_BUDGET, LEAST_CELLS, ShellPlan, plan_shell
+from voldetail.scene.shell_plan import LEAST_CELLS, ShellPlan, plan_shell
 from voldetail.scene.view import View
 
 SOLID_CELLS = 3.0
@@ -49,16 +49,17 @@ class Volume(MarchedVolume):
     """``proxy`` under a volumetric detail, seen through ``view``; `update` bakes, `march` looks.
 
     edge: of a cell in scene units. scale: how many times larger the detail is. whole_plane: the proxy is the plane that
-    fills the view. Raises InputError for an open mesh, and for a grid of more than ``budget`` bytes.
+    fills the view. tiles: only the surface is wanted, which a grid too large for ``budget`` bytes gives tile by tile. Raises
+    InputError for an open mesh, OverBudget for what takes more.
     """
 
     def __init__(
         self, proxy: ProxySetup, view: View, *, edge: float | None = None, scale: float = 1.0, whole_plane: bool = False,
-        budget: int = DEFAULT_BUDGET,
+        budget: int | None = None, tiles: bool = False,
     ) -> None:
         super().__init__(view)
         self.proxy, self.edge, self.scale, self.whole_plane = proxy, edge or view.pixel, scale, whole_plane
-        self.budget = budget
+        self.budget, self.tiles = budget, tiles
         self._kept: Shell | None = None
 
     def update(self, detail: Detail) -> None:
@@ -97,7 +98,7 @@ class Volume(MarchedVolume):
     def plan(self, thickness: float, amplitude: float, solid: bool) -> ShellPlan:
         """Return the grid for a shell of ``thickness`` with room for ``amplitude``, and what it takes."""
         margin = MARGIN * self.edge if solid else thickness / 2 + amplitude + self.edge
-        plan = plan_shell(self._placed(margin, solid), self.edge, thickness, amplitude, self.budget, solid=solid)
+        plan = plan_shell(self._placed(margin, solid), self.edge, thickness, amplitude, self.budget, self.tiles, solid=solid)
         return plan if self.view.perspective else windowed(plan, self.view, margin)
 
     def _placed(self, margin: float, solid: bool) -> ProxySetup:
@@ -146,5 +147,5 @@ def windowed(plan: ShellPlan, view: View, margin: float) -> ShellPlan:
     share = counts[0] * counts[1] / (nx * ny)
     return replace(
         plan, lower=(starts[0], starts[1], z), shape=(nz, counts[1], counts[0]),
-        byte_count=int(plan.byte_count * share), seconds=plan.seconds * share,
+        byte_count=int(plan.byte_count * share), seconds=plan.seconds * share, blocks=math.ceil(plan.blocks * share),
     )
