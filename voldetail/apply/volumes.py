@@ -11,7 +11,7 @@ from voldetail.errors import InputError
 from voldetail.scene.isosurface import isosurface
 from voldetail.scene.lamp import Lamp
 from voldetail.scene.setup import ProxySetup
-from voldetail.scene.shell_plan import OverBudget, ShellPlan
+from voldetail.scene.shell_plan import OverBudgetError, ShellPlan
 from voldetail.scene.surface import VolumeSurface
 from voldetail.scene.tiled_surface import tiled_isosurface
 from voldetail.scene.traced_medium import TracedVolume
@@ -49,7 +49,7 @@ def place(
         volume = Volume(proxy, view, edge=used, scale=scale, whole_plane=whole_plane, budget=BUDGET, tiles=solid)
         try:
             plan = planned(volume, detail)
-        except OverBudget:
+        except OverBudgetError:
             used *= 1.25
             continue
         over = plan.cells * MARCHED_BYTES / BUDGET

@@ -62,20 +62,20 @@ ARCHETYPES: tuple[tuple[str, Kind, dict[str, float]], ...] = (
 """Name, kind and numbers of each look; scale, roughness and stretch are varied over them."""
 
 CLOUDS: tuple[tuple[str, Kind, dict[str, float]], ...] = (
-    ("cumulus", Kind(1, 50, "gaussian", 3, False),
-     {"noise.lacunarity": 2.2, "softness": 0.5, "depth": 20.0, "medium.exponent": 1.5, "medium.asymmetry": 0.6}),
-    ("heaps", Kind(1, 2, "gaussian", 3, False),
-     FALLING | {"noise.lacunarity": 2.2, "softness": 0.5, "depth": 20.0, "medium.exponent": 1.0, "medium.asymmetry": 0.6}),
-    ("broken heaps", Kind(1, 50, "gaussian", 3, False),
+    ("cumulus", Kind(1, 50, "gaussian", 4, False),
+     {"noise.lacunarity": 2.2, "softness": 0.8, "depth": 20.0, "medium.exponent": 1.5, "medium.asymmetry": 0.6}),
+    ("heaps", Kind(1, 2, "gaussian", 4, False),
+     FALLING | {"noise.lacunarity": 2.2, "softness": 0.8, "depth": 20.0, "medium.exponent": 1.0, "medium.asymmetry": 0.6}),
+    ("broken heaps", Kind(1, 50, "gaussian", 4, False),
      FALLING | {"noise.lacunarity": 2.2, "softness": 1.5, "depth": 20.0, "medium.exponent": 6.0, "medium.asymmetry": 0.6}),
     ("tufts", Kind(1, 2, "exponential", 2, False),
      {"noise.lacunarity": 2.5, "softness": 1.0, "depth": 10.0, "medium.exponent": 5.0, "medium.asymmetry": 0.5}),
-    ("veil", Kind(1, 50, "gaussian", 3, False),
+    ("veil", Kind(1, 50, "gaussian", 4, False),
      {"noise.lacunarity": 2.0, "softness": 3.0, "depth": 2.0, "medium.exponent": 4.0, "medium.asymmetry": 0.7}),
     ("fibres", Kind(1, 50, "gaussian", 2, True),
      {"noise.stripe_frequency": 1.0, "noise.stripe_spread": 0.5, "noise.lacunarity": 2.0, "softness": 2.0, "depth": 3.0,
       "medium.exponent": 4.0, "medium.asymmetry": 0.7}),
-    ("smoke", Kind(1, 50, "gaussian", 3, False, fold="ridge"),
+    ("smoke", Kind(1, 50, "gaussian", 4, False, fold="ridge"),
      {"noise.lacunarity": 2.0, "softness": 2.0, "depth": 4.0, "medium.exponent": 4.0, "medium.asymmetry": 0.3}),
 )
 """The same for a medium."""

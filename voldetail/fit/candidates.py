@@ -10,6 +10,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from voldetail.detail import MONOTONE_CURVES, PAPER_NEIGHBOURS, START_CURVES
+from voldetail.fit.ranges import MEDIUM_OCTAVES, OCTAVES
 from voldetail.fit.space import MEDIUM_NAMES, Kind, Space, Vector, shape_of
 
 
@@ -58,8 +59,10 @@ def sampled(
     out = []
     for index, point in enumerate(points):
         (first, last), (striped, fold, grains, stones, plates) = families[index % len(families)]
+        fewest, most = MEDIUM_OCTAVES if space.medium else OCTAVES
+        octaves = fewest + int(point[9] * (most - fewest + 1))
         kind = Kind(
-            first, last, "gaussian" if point[8] < 0.5 else "exponential", 1 + int(point[9] * 3), striped, fold, grains,
+            first, last, "gaussian" if point[8] < 0.5 else "exponential", octaves, striped, fold, grains,
             extended and space.pigmented and point[10] < 0.5, stones, plates,
         )
         low, high = space.scale

@@ -43,12 +43,15 @@ SOLID_ROUGHNESS = (0.05, 1.2)
 """Range of the amplitude in cells, of displacement and of solid volumes: what overhangs may rise higher."""
 
 MEDIUM_ROUGHNESS = (0.3, 3.0)
-SOFTNESS = (0.3, 2.5)
-DEPTH = (0.5, 60.0)
-EXPONENT = (0.7, 10.0)
+SOFTNESS = (0.5, 2.5)
+DEPTH = (1.0, 25.0)
+EXPONENT = (0.7, 8.0)
 ASYMMETRY = (0.0, 0.9)
 """Ranges of a medium: its amplitude in cells, its shell's thickness and the optical depth in amplitudes, d_h and g. Drops of
-water and ice scatter forwards."""
+water and ice scatter forwards. Harder and denser ones look like balls of plaster, and were found on a photo of clouds."""
+
+OCTAVES, MEDIUM_OCTAVES = (1, 3), (2, 5)
+"""Fewest and most; clouds are ragged at every size."""
 
 FOLD_HANDICAP = 1.2
 STRIPED_CELLS_HANDICAP = 1.15

@@ -37,7 +37,7 @@ GLOSS_LIMIT = 0.06
 a mirror."""
 
 LEAST_SHARE = 0.0722
-"""Of luminance that a channel carries: blue's in Rec. 709."""
+"""Of luminance that a channel carries: blue's in Rec. 709; no tint of luminance 1 has more than its inverse."""
 
 DARK = 0.03
 """Linear luminance below which differences count less and less, in the weights 1 / (q + DARK): about where sRGB's curve
@@ -75,7 +75,10 @@ def solve(
     ambient, diffuse = parts.ambient.ravel()[index], parts.diffuse.ravel()[index]
     if background:
         columns = np.stack([ambient, diffuse, 1.0 - parts.covered.ravel()[index]], axis=1).astype(np.float64)
-        found, residual = _alternate(columns, wanted, weights, np.array([0.3, 0.5, float(wanted[0])]), STEPS, (1.0, 1.0, 1.0))
+        # What shows through is nowhere darker or brighter than the photo.
+        least, most = float(wanted[0]), float(wanted[-1])
+        first = np.array([0.3, 0.5, least])
+        found, residual = _alternate(columns, wanted, weights, first, STEPS, (1.0, 1.0, most), (0.0, 0.0, least))
         return Coefficients(float(found[0]), float(found[1]), 0.0, parts.shininess[0], residual, float(found[2]))
     best: Coefficients | None = None
     # Matt first: a highlight has to be worth it.
@@ -109,9 +112,11 @@ def colours(
     picture_order = np.argsort((matt + through)[mask])
     wanted = _group_means(pixels[mask][photo_order])
     columns = _group_means(np.stack([matt[mask], through[mask]], axis=1)[picture_order])
-    largest = 3.0 / LEAST_SHARE  # no channel can be more than the whole luminance
+    brightest = max(float(through[mask].max()), 1e-6)  # where it shows most, all of it does
+    least, most = np.percentile(pixels[mask], (1.0, 99.0), axis=0) / brightest
     found = np.array([
-        bounded_least_squares(columns, wanted[:, channel], (largest, largest)) for channel in range(3)
+        bounded_least_squares(columns, wanted[:, c], (1.0 / LEAST_SHARE, float(most[c])), (0.0, float(least[c])))
+        for c in range(3)
     ])
     return _of_luminance_one(found[:, 0]), _of_luminance_one(found[:, 1])
 
@@ -134,27 +139,32 @@ def _group_means(values: NDArray[np.floating]) -> NDArray[np.float64]:
 
 def _alternate(
     columns: NDArray[np.float64], wanted: NDArray[np.float64], weights: NDArray[np.float64],
-    start: NDArray[np.float64], steps: int, upper: tuple[float, ...],
+    start: NDArray[np.float64], steps: int, upper: tuple[float, ...], lower: tuple[float, ...] | None = None,
 ) -> tuple[NDArray[np.float64], float]:
-    """Alternate between sorting the picture and solving for its coefficients, at most ``upper`` each."""
+    """Alternate between sorting the picture and solving for its coefficients, ``lower`` (default 0) to ``upper`` each."""
     current = start
     residual = np.inf
     for _ in range(steps):
         order = np.argsort(columns @ current)
         means = _group_means(columns[order])
-        current = bounded_least_squares(means * weights[:, None], wanted * weights, upper)
+        current = bounded_least_squares(means * weights[:, None], wanted * weights, upper, lower)
         residual = float(np.mean((weights * (means @ current - wanted)) ** 2))
     return current, residual
 
 
 def bounded_least_squares(
-    matrix: NDArray[np.float64], values: NDArray[np.float64], upper: tuple[float, ...] | None = None
+    matrix: NDArray[np.float64], values: NDArray[np.float64], upper: tuple[float, ...] | None = None,
+    lower: tuple[float, ...] | None = None,
 ) -> NDArray[np.float64]:
-    """Return x, 0 <= x <= ``upper`` (default 1 each), that minimises |matrix x - values|.
+    """Return x, ``lower`` (default 0) <= x <= ``upper`` (default 1 each), that minimises |matrix x - values|.
 
     An active set: unknowns that leave the box are held at its side, and let go where the gradient points inwards. With
     three unknowns that is a few tiny systems, a tenth of the time that a general solver takes.
     """
+    if lower is not None:
+        bottom = np.array(lower)
+        room = tuple(float(v) for v in np.maximum(np.array(upper or (1.0,) * len(lower)) - bottom, 0.0))
+        return bottom + bounded_least_squares(matrix, values - matrix @ bottom, room)
     gram, right = matrix.T @ matrix, matrix.T @ values
     count = len(right)
     # A trace of ridge keeps columns that are zero (no highlight, all in shadow) from making the system singular.

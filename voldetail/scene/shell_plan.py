@@ -52,7 +52,7 @@ SECONDS_A_TILED_VERTEX = 2e-6
 """As above."""
 
 
-class OverBudget(InputError):
+class OverBudgetError(InputError):
     """A grid takes more memory than it may."""
 
 
@@ -143,7 +143,7 @@ def plan_shell(
             advice += f" (and a thickness of at least {fitting * LEAST_CELLS:.3g})"
         if math.isinf(fitting):
             advice = f"the program alone takes {BYTES_AT_LEAST / 2**20:.0f} MB, so allow more"
-        raise OverBudget(
+        raise OverBudgetError(
             f"A grid of {plan.sentence.split(',')[0]} needs {plan.byte_count / 2**20:.0f} MB{' by tiles' if tiles else ''}, more"
             f" than the {budget / 2**20:.0f} MB allowed: {advice}, or allow {math.ceil(plan.byte_count / 2**20)} MB."
         )

@@ -34,11 +34,14 @@ SHEET = 1e-3
 SOLID_PIXELS, MEDIUM_PIXELS = 1.0, 2.0
 """Edge of a cell in pixels: a surface's outlines are as sharp as the pixels, a medium's density is soft."""
 
-FIT_SECONDS = 0.3
+FIT_SECONDS = 0.25
 """Estimated time that baking a detail may take in a fit; larger scenes get coarser cells."""
 
-USUAL_AMPLITUDE = 0.1
-"""Scene units, for that estimate, which is not to change with the detail."""
+SOLID_RISE, MEDIUM_RISE = 0.04, 0.1
+"""Amplitude for that estimate, which is not to change with the detail, as a share of the window's longest side."""
+
+SOFT = 1.5
+"""Thickness of a medium's shell for it, in amplitudes."""
 
 MESH_STEP = 1.25
 """A mesh's distances are computed for a shell up to this factor thicker and higher than needed, and kept for as long as
@@ -50,7 +53,7 @@ class Volume(MarchedVolume):
 
     edge: of a cell in scene units. scale: how many times larger the detail is. whole_plane: the proxy is the plane that
     fills the view. tiles: only the surface is wanted, which a grid too large for ``budget`` bytes gives tile by tile. Raises
-    InputError for an open mesh, OverBudget for what takes more.
+    InputError for an open mesh, OverBudgetError for what takes more.
     """
 
     def __init__(
@@ -118,10 +121,10 @@ class Volume(MarchedVolume):
 def fitting_edge(proxy: ProxySetup, view: View, *, solid: bool, whole_plane: bool) -> float:
     """Return the edge of cells for a fit: SOLID_PIXELS or MEDIUM_PIXELS, more where baking would take over FIT_SECONDS."""
     edge = (SOLID_PIXELS if solid else MEDIUM_PIXELS) * view.pixel
-    amplitude = min(USUAL_AMPLITUDE, 8.0 * edge)
+    amplitude = (SOLID_RISE if solid else MEDIUM_RISE) * max(view.rows, view.columns) * view.pixel
     while True:
-        volume = Volume(proxy, view, edge=edge, whole_plane=whole_plane)
-        thickness = SOLID_CELLS * edge if solid else 2.0 * amplitude
+        volume = Volume(proxy, view, edge=edge, whole_plane=whole_plane, budget=1 << 62)
+        thickness = SOLID_CELLS * edge if solid else SOFT * amplitude
         if volume.plan(thickness, amplitude, solid).seconds <= FIT_SECONDS:
             return edge
         edge *= 1.1
