@@ -145,7 +145,8 @@ def space_of(setup: Setup, target: Target) -> Space:
     view = view_of(setup.camera, target.shape, target.zone, setup.photo.resolution)
     lowest, highest = bounds("noise.scale")
     # What shows no finer than a pixel, or than a cell of the grid that a volume is baked to.
-    grain = max(view.pixel, edge_of(setup, view)) if setup.mode == "volume" else view.pixel
+    cell = edge_of(setup, view) if setup.mode == "volume" else 0.0
+    grain = max(view.pixel, cell)
     shown = max(view.rows, view.columns) * view.pixel
     coarsest = max(1.0 / (LARGEST_CELL * shown), lowest)
     finest = min(1.0 / (SMALLEST_CELL * grain), highest)
@@ -158,7 +159,7 @@ def space_of(setup: Setup, target: Target) -> Space:
         domain=setup.domain, scale=(coarsest, finest), finest=1.0 / (FINEST_OCTAVE * grain),
         amplitude=setup.amplitude, plain=setup.fit.solver == "paper", mode=setup.mode, medium=setup.medium,
         roughness=MEDIUM_ROUGHNESS if setup.medium else SOLID_ROUGHNESS if setup.mode == "volume" else ROUGHNESS,
-        highest=min(bounds("relief.amplitude")[1], shown * DEEPEST if setup.mode == "volume" else math.inf),
+        highest=min(bounds("relief.amplitude")[1], shown * DEEPEST if setup.mode == "volume" else math.inf), cell=cell,
     )
 
 

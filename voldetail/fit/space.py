@@ -19,6 +19,7 @@ from voldetail.detail.record import MediumParameters, NoiseParameters, Reflectan
 from voldetail.fit.ranges import (
     ASYMMETRY,
     CELL_ALBEDO,
+    CELL_DEPTH,
     DEPTH,
     ELONGATION,
     EXPONENT,
@@ -38,6 +39,7 @@ from voldetail.fit.ranges import (
     PLATE_HEIGHT,
     PLATE_TILT,
     PLATES_HANDICAP,
+    RAMP_CELLS,
     ROUGHNESS,
     SHAPE_RANGE,
     SIZE_SPREAD,
@@ -107,7 +109,8 @@ class Space:
     unit above which an octave would be finer than the pixels. amplitude: the user's, or None if it is searched.
     anisotropy, roughness, stripes: bounds; roughness is the amplitude in cells, A_d s, which is better conditioned than
     A_d: the slopes of the relief, and so its shading, go with it. plain: GD10's own numbers only. mode, medium: of the
-    details. highest: the largest amplitude. A medium's lengths are searched in amplitudes (softness T / A_d, depth
+    details. highest: the largest amplitude. cell: edge of the grid's, 0 without one. A medium's lengths are searched in
+    amplitudes (softness T / A_d, depth
     sigma_t A_d), for the same reason.
     """
 
@@ -122,6 +125,7 @@ class Space:
     mode: Literal["displacement", "volume"] = "displacement"
     medium: bool = False
     highest: float = bounds("relief.amplitude")[1]
+    cell: float = 0.0
 
     @property
     def pigmented(self) -> bool:
@@ -205,7 +209,10 @@ class Space:
             pigment = pigment.model_copy(update={name: values[f"reflectance.{name}"] for name in PIGMENT})
         medium = None
         if self.medium:
-            thickness, extinction = values["softness"] * amplitude, values["depth"] / amplitude
+            # What changes faster than the grid's cells would show them instead, as steps; a power sharpens the edge.
+            thinnest = self.cell * RAMP_CELLS * (1.0 + values["medium.exponent"] / 2.0)
+            thickness = max(values["softness"] * amplitude, thinnest)
+            extinction = min(values["depth"] / amplitude, CELL_DEPTH / self.cell if self.cell else math.inf)
             medium = MediumParameters(
                 thickness=float(np.clip(thickness, *bounds("medium.thickness"))), exponent=values["medium.exponent"],
                 extinction=float(np.clip(extinction, *bounds("medium.extinction"))), asymmetry=values["medium.asymmetry"],
