@@ -8,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from voldetail.fit.reflectance import GLOSS_LIMIT, RANKS, bounded_least_squares, solve
+from voldetail.fit.reflectance import GLOSS_LIMIT, RANKS, bounded_least_squares, colours, solve
 from voldetail.render import SHININESS, Components
 
 SIDE = 48
@@ -47,6 +47,17 @@ def test_bounds_hold_for_any_problem(matrix: NDArray[np.float64], values: NDArra
     found = bounded_least_squares(matrix, values)
     assert found.min() >= 0
     assert found.max() <= 1
+
+
+def test_lower_bounds_are_scipys_too() -> None:
+    rng = np.random.default_rng(12)
+    for _ in range(100):
+        matrix = rng.normal(size=(20, 3))
+        values = matrix @ rng.uniform(-0.6, 1.6, 3) + rng.normal(size=20)
+        lower, upper = rng.uniform(0.0, 0.3, 3), rng.uniform(0.5, 1.2, 3)
+        found = bounded_least_squares(matrix, values, tuple(upper), tuple(lower))
+        wanted = lsq_linear(matrix, values, bounds=(lower, upper), method="bvls").x
+        assert found == pytest.approx(wanted, abs=1e-5)
 
 
 def parts(seed: int = 1) -> Components:
@@ -136,3 +147,39 @@ def test_no_coefficient_leaves_its_bounds_whatever_the_photo(
         assert 0 <= value <= 1
     assert 0 <= found.specular <= GLOSS_LIMIT
     assert found.shininess in SHININESS
+
+
+def cloud(seed: int = 2) -> Components:
+    """Components of a cloud: thick and thin parts with their own light."""
+    rng = np.random.default_rng(seed)
+    covered = np.clip(rng.uniform(-0.3, 1.3, (SIDE, SIDE)), 0, 1).astype(np.float32)
+    diffuse = (covered * rng.uniform(0.2, 0.9, (SIDE, SIDE))).astype(np.float32)
+    ambient = (covered * rng.uniform(0.7, 1.0, (SIDE, SIDE))).astype(np.float32)
+    nothing = np.zeros((len(SHININESS), SIDE, SIDE), dtype=np.float32)
+    return Components(ambient, diffuse, nothing, SHININESS, covered)
+
+
+def test_a_background_that_shows_through_is_found_with_the_rest() -> None:
+    seen = cloud()
+    photo = 0.3 * seen.ambient + 0.6 * seen.diffuse + 0.2 * (1 - seen.covered)
+    found = solve(photo, seen, WHOLE, background=True)
+    assert (found.ambient, found.diffuse, found.background) == pytest.approx((0.3, 0.6, 0.2), abs=0.02)
+    assert found.specular == 0.0
+    # Without one, the sky would have to be cloud.
+    assert solve(photo, seen, WHOLE).residual > 10 * found.residual
+
+
+def test_a_background_is_no_darker_and_no_brighter_than_the_photo() -> None:
+    seen = cloud()
+    photo = np.clip(0.5 * seen.ambient + 0.5 * seen.diffuse, 0.25, None)
+    assert solve(photo, seen, WHOLE, background=True).background >= 0.25 - 1e-6
+
+
+def test_the_colours_of_a_cloud_and_of_the_sky_are_told_apart() -> None:
+    seen = cloud()
+    white, blue = np.array([1.02, 1.0, 0.9403]), np.array([0.5, 1.0, 2.4723])  # luminance 1
+    matt, through = 0.3 * seen.ambient + 0.6 * seen.diffuse, 0.2 * (1 - seen.covered)
+    pixels = (matt[..., None] * white + through[..., None] * blue).astype(np.float32)
+    tint, behind = colours(pixels, matt, through, WHOLE)
+    assert tint == pytest.approx(tuple(white), abs=0.03)
+    assert behind == pytest.approx(tuple(blue), abs=0.15)

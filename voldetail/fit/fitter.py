@@ -127,7 +127,7 @@ def fit(
     final = _finish(session)
     heights = None if interrupted else _heights(setup, session, final)
     told = () if interrupted else _told(session, final)
-    final, background = _coloured(target, final)
+    final, background = coloured(target, final)
     return FitResult(
         detail=signed(final, setup, target, session, Findings(status, light_guess, heights, told, background)),
         setup=setup, target=target,
@@ -214,7 +214,7 @@ def _finish(session: Session) -> Evaluation:
     return min((session.fine.evaluate(details[0], seed) for seed in seeds), key=lambda e: e.score)
 
 
-def _coloured(target: Target, final: Evaluation) -> tuple[Evaluation, tuple[float, float, float]]:
+def coloured(target: Target, final: Evaluation) -> tuple[Evaluation, tuple[float, float, float]]:
     """Return ``final`` with the colour of its medium apart from that of what shows through it, and the latter."""
     if final.detail.medium is None:
         return final, (0.0, 0.0, 0.0)
