@@ -59,8 +59,9 @@ def fit(
 
     ``photo`` is a file or "skimage:gravel" (":grass", ":brick"); ``light`` as on the command line ("AZ,EL", "x,y,z",
     "flash", "point:x,y,z", or "auto" to have it estimated) or a Light. ``options`` are the fields of a Setup, nested ones
-    as dictionaries: mask, proxy={"kind": "sphere"}, camera, amplitude, domain, mode and look ("volume", "medium"), seed, fit={"evaluations": 500}, and zone and
-    resolution of the photo. Raises InputError for input that cannot be used; Ctrl-C ends the search with the best so far.
+    as dictionaries: mask, proxy={"kind": "sphere"}, camera, amplitude, domain, mode="volume", look="medium", seed,
+    fit={"evaluations": 500}, and zone and resolution of the photo. Raises InputError for input that cannot be
+    used; Ctrl-C ends the search with the best so far.
     """
     if isinstance(photo, Setup):
         return fit_setup(photo, on_progress=on_progress)

@@ -34,7 +34,7 @@ SHEET = 1e-3
 SOLID_PIXELS, MEDIUM_PIXELS = 1.0, 2.0
 """Edge of a cell in pixels: a surface's outlines are as sharp as the pixels, a medium's density is soft."""
 
-FIT_SECONDS = 0.25
+FIT_SECONDS = 0.15
 """Estimated time that baking a detail may take in a fit; larger scenes get coarser cells."""
 
 SOLID_RISE, MEDIUM_RISE = 0.04, 0.1
