@@ -137,7 +137,8 @@ def main() -> None:
                 "name": case.name, "look": case.look, "light": case.light, "credit": case.credit, "M": round(result.distance, 3),
                 "photo_halves": floor.photo_halves, "other_seed": floor.other_seed, "seconds": round(result.seconds, 1),
                 "evaluations": result.evaluations,
-                "peak_mb_so_far": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024), "settings": detail.provenance.settings if detail.provenance else {},
+                "peak_mb_so_far": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
+                "settings": detail.provenance.settings if detail.provenance else {},
             })  # fmt: skip
             print(json.dumps(records[-1]), flush=True)
         with tempfile.TemporaryDirectory() as scratch:

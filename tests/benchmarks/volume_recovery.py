@@ -21,6 +21,7 @@ from voldetail.backend import mitsuba
 from voldetail.detail import Detail, Reflectance, rounded
 from voldetail.files import write_text
 from voldetail.fit import fit
+from voldetail.fit.fitter import DEEPEST
 from voldetail.fit.ranges import MEDIUM_ROUGHNESS
 from voldetail.fit.session import derived_seed
 from voldetail.fit.space import Kind, Space
@@ -50,6 +51,7 @@ def truth_of(name: str, look: Look) -> tuple[Detail, Setup]:
     space = Space(
         domain="solid", scale=(3.0, 8.0) if medium else (5.0, 16.0), finest=1.0 / (1.6 * 2 * (4 if medium else 2) / SIDE),
         roughness=(0.5, 1.8) if medium else (0.15, 1.0), anisotropy=(0.5, 2.0), mode="volume", medium=medium,
+        highest=0.8 * DEEPEST * 2.0,
     )
     assert not medium or (MEDIUM_ROUGHNESS[0] <= space.roughness[0] and space.roughness[1] <= MEDIUM_ROUGHNESS[1])
     # Within the middle of what is searched, so that a truth is not beside a bound.
