@@ -105,7 +105,7 @@ def sheet(detail: Detail, case: Case, photo: NDArray[np.float32], fitted: NDArra
     left = np.ones((shapes.shape[0], wide, 3), dtype=np.float32)
     high = min(round(wide * photo.shape[0] / photo.shape[1]), left.shape[0] // 2 - 4)
     for index, picture in enumerate((photo, fitted)):
-        part = resize(picture, (high, round(high * photo.shape[1] / photo.shape[0])))
+        part = resize(picture, (high, min(round(high * photo.shape[1] / photo.shape[0]), wide)))
         top = index * (left.shape[0] // 2)
         left[top : top + part.shape[0], : part.shape[1]] = part
     return np.concatenate([left, np.ones((shapes.shape[0], 8, 3), dtype=np.float32), shapes], axis=1)
