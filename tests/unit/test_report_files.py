@@ -18,9 +18,10 @@ from voldetail.apply.gallery import Gallery
 from voldetail.detail import Detail, NoiseFloor
 from voldetail.fit.fitter import FitResult
 from voldetail.fit.interval import AmplitudeInterval
+from voldetail.fit.told import Told
 from voldetail.image import Photo
 from voldetail.report import write_report
-from voldetail.report.facts import amplitude_words, duration, light_words
+from voldetail.report.facts import amplitude_words, duration, facts, light_words, medium_words
 from voldetail.report.page import page
 from voldetail.scene.lights_text import parse_light
 from voldetail.scene.setup_file import setup_from
@@ -45,6 +46,8 @@ def result(rows: int = 48, columns: int = 64, **changes: Any) -> FitResult:
         setup=setup_from({"photo": {"path": "wall.jpg"}, "light": "135,45"}),
         target=target,
         picture=pixels[..., 0],
+        covered=np.ones_like(pixels[..., 0]),
+        background=(0.0, 0.0, 0.0),
         distance=2.25,
         evaluations=800,
         seconds=40.0,
@@ -229,3 +232,17 @@ def test_an_amplitude_without_an_interval_says_why() -> None:
     assert "not looked at" in amplitude_words(result())
     given = setup_from({"photo": {"path": "wall.jpg"}, "light": "135,45", "amplitude": 0.05})
     assert amplitude_words(result(setup=given)) == "0.05 scene units, as given"
+
+
+def test_a_medium_is_told_number_by_number() -> None:
+    told = (
+        Told("medium.extinction", 12.0, 8.0, 48.0, 3.0, 48.0), Told("medium.thickness", 0.2, 0.1, 0.3, 0.05, 0.8),
+        Told("medium.albedo", 0.99, 0.2, 1.0, 0.2, 1.0),
+    )
+    words = medium_words(result(told=told))
+    assert words == (
+        "extinction 12 (8 to 48 or more), shell thickness 0.2 (0.1 to 0.3); the photo does not tell scattering albedo"
+    )
+    assert dict(facts(result(told=told)))["Medium"] == words
+    assert "Amplitude" not in dict(facts(result(told=told)))
+    assert medium_words(result(told=told[2:])) == "none of its numbers is told"

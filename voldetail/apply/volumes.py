@@ -25,6 +25,7 @@ MARCHED_BYTES = 80
 """For each cell of a marched grid at the peak, gradients, depths and copies: 1.3 GB for 256 cells a side."""
 
 COARSER = 1.05
+NO_LIMIT = 1 << 62
 
 Tell = Callable[[str], None]
 Progress = Callable[[int, int], None]
@@ -46,7 +47,9 @@ def place(
     wanted = edge or (SOLID_PIXELS if solid else MEDIUM_PIXELS) * view.pixel
     used = wanted
     while True:
-        volume = Volume(proxy, view, edge=used, scale=scale, whole_plane=whole_plane, budget=BUDGET, tiles=solid)
+        # A medium's own plan does not know what marching it takes on top, which is what is held against the budget below.
+        allowed = BUDGET if solid else NO_LIMIT
+        volume = Volume(proxy, view, edge=used, scale=scale, whole_plane=whole_plane, budget=allowed, tiles=solid)
         try:
             plan = planned(volume, detail)
         except OverBudgetError:

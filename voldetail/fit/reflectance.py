@@ -36,6 +36,10 @@ GLOSS_LIMIT = 0.06
 """Largest Ks: what a dielectric of index 1.65 reflects head-on. With more, white lichen on a slab of ../shared/data became
 a mirror."""
 
+DARKEST_BACKGROUND = 0.6
+"""Luminance of what shows through a medium, at least, in that of the darkest pixels: with none, thick clouds stood before
+black skies and were too bright."""
+
 LEAST_SHARE = 0.0722
 """Of luminance that a channel carries: blue's in Rec. 709; no tint of luminance 1 has more than its inverse."""
 
@@ -75,8 +79,8 @@ def solve(
     ambient, diffuse = parts.ambient.ravel()[index], parts.diffuse.ravel()[index]
     if background:
         columns = np.stack([ambient, diffuse, 1.0 - parts.covered.ravel()[index]], axis=1).astype(np.float64)
-        # What shows through is nowhere darker or brighter than the photo.
-        least, most = float(wanted[0]), float(wanted[-1])
+        # What shows through is not brighter than the photo, nor much darker: some cloud is before its darkest part too.
+        least, most = DARKEST_BACKGROUND * float(wanted[0]), float(wanted[-1])
         first = np.array([0.3, 0.5, least])
         found, residual = _alternate(columns, wanted, weights, first, STEPS, (1.0, 1.0, most), (0.0, 0.0, least))
         return Coefficients(float(found[0]), float(found[1]), 0.0, parts.shininess[0], residual, float(found[2]))
