@@ -13,7 +13,7 @@ from voldetail.errors import InputError
 from voldetail.scene.density_grid import DensityGrid
 from voldetail.scene.lamp import Lamp
 from voldetail.scene.marched import MarchedVolume
-from voldetail.scene.medium import Medium, check
+from voldetail.scene.medium import Medium, check, reflected, tinted_albedo
 from voldetail.scene.traced_medium import TracedVolume
 from voldetail.scene.view import View
 
@@ -110,3 +110,30 @@ def test_a_grid_of_one_cell_and_one_of_nothing_can_be_marched() -> None:
     volume.fill(sampled(lambda x, y, z: 0 * x), Medium(2.0))
     found = volume.march(LAMP, 1, (16.0,))
     assert all(np.array_equal(np.asarray(f), np.zeros(64)) for f in found)
+
+
+@pytest.mark.parametrize("g", [0.0, 0.6])
+def test_a_thick_medium_takes_the_tint_and_not_its_power(g: float) -> None:
+    found = tinted_albedo(0.99, g, (0.95, 0.99, 1.2))
+    assert found[2] == pytest.approx(0.99, abs=1e-9)
+    assert [reflected(v, g) / reflected(0.99, g) for v in found] == pytest.approx([0.95 / 1.2, 0.99 / 1.2, 1.0], rel=1e-9)
+    # Most of it is made by albedos that hardly differ.
+    assert found[0] > 0.95
+    assert reflected(1.0, g) == 1.0
+    assert reflected(0.0, g) == 0.0
+
+
+def test_the_reflected_share_is_chandrasekhars() -> None:
+    """Even scattering has an exact solution (Chandrasekhar 1950), R = 1 - 2 sqrt(1 - omega) times the integral of mu H(mu).
+
+    1 / H(mu) = sqrt(1 - omega) + omega / 2 times the integral of mu' H(mu') / (mu + mu'), here on 64 Gauss points.
+    """
+    x, w = np.polynomial.legendre.leggauss(64)
+    mu, w = 0.5 * (x + 1.0), 0.5 * w
+    for omega in (0.5, 0.9, 0.99):
+        h = np.ones_like(mu)
+        for _ in range(500):
+            inner = (mu * h * w / (mu[:, None] + mu)).sum(axis=1)
+            h = 0.5 * (h + 1.0 / (np.sqrt(1.0 - omega) + 0.5 * omega * inner))
+        exact = 1.0 - 2.0 * np.sqrt(1.0 - omega) * float((h * mu * w).sum())
+        assert reflected(omega, 0.0) == pytest.approx(exact, abs=0.01)

@@ -10,6 +10,7 @@ from voldetail.detail import Detail
 from voldetail.errors import InputError
 from voldetail.scene.isosurface import isosurface
 from voldetail.scene.lamp import Lamp
+from voldetail.scene.medium import tinted_albedo
 from voldetail.scene.setup import ProxySetup
 from voldetail.scene.shell_plan import OverBudgetError, ShellPlan
 from voldetail.scene.surface import VolumeSurface
@@ -105,10 +106,9 @@ def traced_medium(
         raise InputError("Solid matter is no medium: it has a surface to be traced.")
     reflectance, grid = detail.reflectance, volume.texture(detail).bake()
     medium = medium_of(detail, volume.edge, volume.scale)
-    most = max(reflectance.tint)
-    tint = tuple(detail.medium.albedo * c / most for c in reflectance.tint)
     if emitters is not None:
-        return TracedVolume(grid, medium, volume.view, None, albedo=(tint[0], tint[1], tint[2]), emitters=emitters)
+        albedo = tinted_albedo(detail.medium.albedo, detail.medium.asymmetry, reflectance.tint)
+        return TracedVolume(grid, medium, volume.view, None, albedo=albedo, emitters=emitters)
     assert lamp is not None
     beam = Lamp(lamp.direction, lamp.position, lamp.strength * reflectance.diffuse, lamp.at_camera)
     return TracedVolume(

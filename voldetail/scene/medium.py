@@ -80,3 +80,27 @@ def check(grid: DensityGrid) -> None:
         raise InputError(
             f"The density grid's values have to be numbers from 0 to 1, but {wrong} of its {wanted} are not: clip them."
         )
+
+
+def reflected(albedo: float, asymmetry: float) -> float:
+    """Return the share of even light that an endless thick medium reflects, R = (1 - s)(1 - 0.139 s) / (1 + 1.17 s).
+
+    s^2 = (1 - omega) / (1 - g omega), after van de Hulst 1980, "Multiple Light Scattering".
+    """
+    s = math.sqrt((1.0 - albedo) / (1.0 - asymmetry * albedo))
+    return (1.0 - s) * (1.0 - 0.139 * s) / (1.0 + 1.17 * s)
+
+
+def tinted_albedo(albedo: float, asymmetry: float, tint: tuple[float, ...]) -> tuple[float, float, float]:
+    """Return the albedo of each channel with which a thick medium has the colour ``tint``, ``albedo`` in its brightest.
+
+    The inverse of `reflected`: light that scatters many times takes on an albedo's colour many times over.
+    """
+    whole, found = reflected(albedo, asymmetry), []
+    for channel in tint:
+        wanted = whole * channel / max(tint)
+        b = 1.139 + 1.17 * wanted
+        s = (b - math.sqrt(b * b - 4.0 * 0.139 * (1.0 - wanted))) / (2.0 * 0.139)
+        found.append(max((1.0 - s * s) / (1.0 - asymmetry * s * s), 0.0))
+    r, g, b = found
+    return r, g, b
