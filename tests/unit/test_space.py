@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from voldetail.detail import PAPER_NEIGHBOURS, START_CURVES, bounds, load_detail, rounded, save_detail
 from voldetail.detail.record import Detail
+from voldetail.fit.profiles import FOLDS, SHAPE_COUNT, fold, profile, shape_of
 from voldetail.fit.ranges import (
     ELONGATION,
     FOLD_HANDICAP,
@@ -22,7 +23,7 @@ from voldetail.fit.ranges import (
     STONE_GAIN,
     STONE_HEIGHT,
 )
-from voldetail.fit.space import FOLDS, SHAPE_COUNT, Kind, Space, fold, profile, shape_of
+from voldetail.fit.space import Kind, Space
 
 SPACE = Space("solid", (1.0, 60.0), 120.0)
 KINDS = st.builds(

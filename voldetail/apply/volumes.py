@@ -17,7 +17,7 @@ from voldetail.scene.surface import VolumeSurface
 from voldetail.scene.tiled_surface import tiled_isosurface
 from voldetail.scene.traced_medium import TracedVolume
 from voldetail.scene.view import View
-from voldetail.scene.volume import MEDIUM_PIXELS, SOLID_PIXELS, Volume, medium_of
+from voldetail.scene.volume import MEDIUM_PIXELS, SOLID_PIXELS, Volume, medium_of, thinnest_edge
 
 BUDGET = 2 << 30
 """Bytes that a volume may take; where cells of the wanted size take more, they become larger."""
@@ -45,7 +45,11 @@ def place(
     ``tell`` gets a sentence with the cells, the memory and the time that this will take. Raises InputError for an open mesh.
     """
     solid = detail.medium is None
-    wanted = edge or (SOLID_PIXELS if solid else MEDIUM_PIXELS) * view.pixel
+    wanted = edge or SOLID_PIXELS * view.pixel
+    if detail.medium is not None:
+        # As fine as its edge needs, between half a pixel and what a soft one makes do with.
+        needed = detail.medium.thickness * scale / thinnest_edge(1.0, detail.medium.exponent)
+        wanted = min(max(needed, 0.5 * view.pixel), MEDIUM_PIXELS * view.pixel)
     used = wanted
     while True:
         # A medium's own plan does not know what marching it takes on top, which is what is held against the budget below.

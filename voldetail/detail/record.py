@@ -194,9 +194,7 @@ class Detail(Record):
         default=None, description="Of a volume that light passes through; without it a volume is solid."
     )
     provenance: Provenance | None = Field(default=None, description="Where the detail came from.")
-    noise_floor: NoiseFloor = Field(
-        default_factory=NoiseFloor, description="Distances that chance alone gives."
-    )
+    noise_floor: NoiseFloor = Field(default_factory=NoiseFloor, description="Distances that chance alone gives.")
 
     @model_validator(mode="after")
     def _volume(self) -> Detail:

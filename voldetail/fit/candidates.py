@@ -10,8 +10,9 @@ import numpy as np
 from scipy.stats import qmc
 
 from voldetail.detail import MONOTONE_CURVES, PAPER_NEIGHBOURS, START_CURVES
+from voldetail.fit.profiles import shape_of
 from voldetail.fit.ranges import MEDIUM_OCTAVES, OCTAVES
-from voldetail.fit.space import MEDIUM_NAMES, Kind, Space, Vector, shape_of
+from voldetail.fit.space import MEDIUM_NAMES, Kind, Space, Vector
 
 
 @dataclass(frozen=True)

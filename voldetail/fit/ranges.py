@@ -50,9 +50,6 @@ ASYMMETRY = (0.0, 0.9)
 """Ranges of a medium: its amplitude in cells, its shell's thickness and the optical depth in amplitudes, d_h and g. Drops of
 water and ice scatter forwards. Harder and denser ones look like balls of plaster, and were found on a photo of clouds."""
 
-RAMP_CELLS, CELL_DEPTH = 2.0, 1.5
-"""Cells that a medium's edge takes at least, and optical depth of one cell at most: steps are not seen then."""
-
 OCTAVES, MEDIUM_OCTAVES = (1, 3), (2, 5)
 """Fewest and most; clouds are ragged at every size."""
 

@@ -14,12 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.detail import Detail, bounds, parameter
-from voldetail.detail.parameters import CURVE_POINTS
 from voldetail.detail.record import MediumParameters, NoiseParameters, Reflectance, ReliefParameters
+from voldetail.fit.profiles import SHAPE_COUNT, fold, profile
 from voldetail.fit.ranges import (
     ASYMMETRY,
     CELL_ALBEDO,
-    CELL_DEPTH,
     DEPTH,
     ELONGATION,
     EXPONENT,
@@ -39,7 +38,6 @@ from voldetail.fit.ranges import (
     PLATE_HEIGHT,
     PLATE_TILT,
     PLATES_HANDICAP,
-    RAMP_CELLS,
     ROUGHNESS,
     SHAPE_RANGE,
     SIZE_SPREAD,
@@ -51,10 +49,9 @@ from voldetail.fit.ranges import (
     STONES_HANDICAP,
     STRIPED_CELLS_HANDICAP,
 )
+from voldetail.scene.volume import CELL_DEPTH, thinnest_edge
 
 Vector = NDArray[np.float64]
-
-SHAPE_COUNT = 3
 
 GRAINS = (1.0, -1.0, 1.0)
 
@@ -62,7 +59,6 @@ PIGMENT = ("height_albedo", "cell_albedo", "speckle", "speckle_scale")
 
 MEDIUM_NAMES = ("softness", "medium.exponent", "depth", "medium.asymmetry")
 
-FOLDS = ("none", "ridge", "billow")
 
 
 @dataclass(frozen=True)
@@ -209,9 +205,8 @@ class Space:
             pigment = pigment.model_copy(update={name: values[f"reflectance.{name}"] for name in PIGMENT})
         medium = None
         if self.medium:
-            # What changes faster than the grid's cells would show them instead, as steps; a power sharpens the edge.
-            thinnest = self.cell * RAMP_CELLS * (1.0 + values["medium.exponent"] / 2.0)
-            thickness = max(values["softness"] * amplitude, thinnest)
+            # What changes faster than the grid's cells would not be seen as it is.
+            thickness = max(values["softness"] * amplitude, thinnest_edge(self.cell, values["medium.exponent"]))
             extinction = min(values["depth"] / amplitude, CELL_DEPTH / self.cell if self.cell else math.inf)
             medium = MediumParameters(
                 thickness=float(np.clip(thickness, *bounds("medium.thickness"))), exponent=values["medium.exponent"],
@@ -232,37 +227,3 @@ class Space:
             value = min(max(values[name], low), high)
             out.append(math.log(value / low) / math.log(high / low) if log else (value - low) / (high - low))
         return np.array(out)
-
-
-def profile(shape: Vector) -> Vector:
-    """Return a rising H from 0 to 1 through its control points.
-
-    Its increments are exp(sum_j shape_j cos(pi j (i + 1/2) / 10)): zeros give a straight line, the first number bends
-    it, the second makes it steep in the middle or at the ends, and so on. Four numbers instead of eleven, and always
-    monotone.
-    """
-    intervals = CURVE_POINTS - 1
-    position = (np.arange(intervals) + 0.5) / intervals
-    exponent = sum(c * np.cos(math.pi * (j + 1) * position) for j, c in enumerate(shape))
-    steps = np.exp(exponent)
-    out = np.concatenate([[0.0], np.cumsum(steps)])
-    return np.asarray(np.clip(out / out[-1], 0.0, 1.0))
-
-
-def shape_of(curve: tuple[float, ...]) -> Vector:
-    """Return the numbers whose `profile` is nearest to a rising ``curve`` (least squares on log increments)."""
-    intervals = CURVE_POINTS - 1
-    steps = np.maximum(np.diff(np.asarray(curve)), 0.01)
-    position = (np.arange(intervals) + 0.5) / intervals
-    # The basis is orthogonal on these midpoints, so each number is a projection.
-    logs = np.log(steps)
-    found = [2.0 * np.mean(logs * np.cos(math.pi * (j + 1) * position)) for j in range(SHAPE_COUNT)]
-    return np.clip(np.array(found), -SHAPE_RANGE, SHAPE_RANGE)
-
-
-def fold(curve: Vector, how: str) -> Vector:
-    """Return ``curve`` folded at its middle height."""
-    if how == "none":
-        return curve
-    bent = np.abs(2.0 * curve - 1.0)
-    return 1.0 - bent if how == "ridge" else bent

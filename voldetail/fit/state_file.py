@@ -22,8 +22,9 @@ from voldetail.detail.refusal import printable, refusal, shown
 from voldetail.errors import InputError
 from voldetail.files import sha256, write_text
 from voldetail.fit.candidates import Candidate
+from voldetail.fit.profiles import FOLDS
 from voldetail.fit.session import State
-from voldetail.fit.space import FOLDS, Kind, Space, Vector
+from voldetail.fit.space import Kind, Space, Vector
 from voldetail.scene.setup import Setup
 
 FORMAT = "voldetail.state"

@@ -31,6 +31,9 @@ MARGIN = 16
 SHEET = 1e-3
 """Thickness in scene units of a sheet's own body: as good as none."""
 
+RAMP_CELLS, CELL_DEPTH = 2.0, 1.5
+"""Cells that a medium's edge takes at least, and optical depth of one cell at most; else the cells are seen, as steps."""
+
 SOLID_PIXELS, MEDIUM_PIXELS = 1.0, 2.0
 """Edge of a cell in pixels: a surface's outlines are as sharp as the pixels, a medium's density is soft."""
 
@@ -81,7 +84,7 @@ class Volume(MarchedVolume):
         if medium is None:
             return SOLID_CELLS * self.edge, amplitude
         # A shell that is thinner than the cells can show is as thin as they can.
-        return max(medium.thickness * self.scale, LEAST_CELLS * self.edge), amplitude
+        return max(medium.thickness * self.scale, thinnest_edge(self.edge, medium.exponent)), amplitude
 
     def _shell(self, thickness: float, amplitude: float, solid: bool) -> Shell:
         wanted, kept = (thickness, amplitude), self._kept
@@ -131,11 +134,19 @@ def fitting_edge(proxy: ProxySetup, view: View, *, solid: bool, whole_plane: boo
 
 
 def medium_of(detail: Detail, edge: float, scale: float = 1.0) -> Medium:
-    """Return what the matter of ``detail`` does to light, on cells of ``edge``; lengths grow with ``scale``."""
+    """Return what the matter of ``detail`` does to light, on cells of ``edge``; lengths grow with ``scale``.
+
+    No cell is deeper than CELL_DEPTH: what is denser than a grid can show is as dense as it can.
+    """
     medium = detail.medium
     if medium is None:
         return Medium(SOLID_DEPTH / edge)
-    return Medium(medium.extinction / scale, medium.asymmetry, medium.albedo)
+    return Medium(min(medium.extinction / scale, CELL_DEPTH / edge), medium.asymmetry, medium.albedo)
+
+
+def thinnest_edge(edge: float, exponent: float) -> float:
+    """Return the least thickness of a medium's shell that cells of ``edge`` show; the power d_h sharpens its edge."""
+    return max(RAMP_CELLS * (1.0 + exponent / 2.0), LEAST_CELLS) * edge
 
 
 def windowed(plan: ShellPlan, view: View, margin: float) -> ShellPlan:
