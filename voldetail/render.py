@@ -53,12 +53,16 @@ class Components:
             picture = picture + specular * self.specular[self.shininess.index(shininess)]
         return np.asarray(picture, dtype=np.float32)
 
-    def colour(self, reflectance: Reflectance) -> NDArray[np.float32]:
-        """Return the picture (H, W, 3) under ``reflectance``: its tint colours all but the highlight."""
+    def colour(self, reflectance: Reflectance, behind: float | tuple[float, float, float] = 0.0) -> NDArray[np.float32]:
+        """Return the picture (H, W, 3) under ``reflectance``: its tint colours all but the highlight.
+
+        behind: a number or a colour, seen as far as a pixel is not covered.
+        """
         tint = np.asarray(reflectance.tint, dtype=np.float32)
         matt = reflectance.ambient * self.ambient + reflectance.diffuse * self.diffuse
         gloss = self.luminance(0.0, 0.0, reflectance.specular, reflectance.shininess)
-        return np.asarray(matt[..., None] * tint + gloss[..., None], dtype=np.float32)
+        through = (1.0 - self.covered[..., None]) * np.asarray(behind, dtype=np.float32)
+        return np.asarray(matt[..., None] * tint + gloss[..., None] + through, dtype=np.float32)
 
 
 def components(

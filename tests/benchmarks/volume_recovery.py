@@ -83,7 +83,7 @@ def photo_of(detail: Detail, setup: Setup, seed: int | None = None) -> NDArray[n
     surface = build(setup, (SIDE, SIDE), (0, 0, SIDE, SIDE))
     surface.update(detail if seed is None else detail.model_copy(update={"seed": seed}))
     parts = components(surface, lamp_of(setup.light), subsamples=2, shininess=(detail.reflectance.shininess,))
-    colour = parts.colour(detail.reflectance) + BACKGROUND * (1.0 - parts.covered[..., None])
+    colour = parts.colour(detail.reflectance, BACKGROUND)
     encoded = np.round(to_srgb(np.clip(colour, 0, 1)) * 255) / 255
     return np.asarray(to_linear(encoded.astype(np.float32)), dtype=np.float32)
 

@@ -65,8 +65,7 @@ def gallery(
 
     def under(lamp: Lamp) -> Picture:
         parts = components(surface, lamp, subsamples=3, shininess=(detail.reflectance.shininess,))
-        behind = np.asarray(result.background, dtype=np.float32)
-        return np.asarray(parts.colour(detail.reflectance) + (1.0 - parts.covered[..., None]) * behind, dtype=np.float32)
+        return parts.colour(detail.reflectance, result.background)
 
     on_progress("the fit and four other lights")
     fitted = under(target.lamp)

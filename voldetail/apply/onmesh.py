@@ -161,9 +161,7 @@ def _lit(
 ) -> Picture:
     """Return the picture under one light and the detail's own sky, without noise."""
     parts = components(surface, lamp, subsamples=subsamples, shininess=(detail.reflectance.shininess,))
-    picture = parts.colour(detail.reflectance)
-    behind = np.asarray(background, dtype=np.float32)
-    return np.asarray(picture + (1.0 - parts.covered[..., None]) * behind, dtype=np.float32)
+    return parts.colour(detail.reflectance, background)
 
 
 def _bsdf(detail: Detail, shading: Shading) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import lru_cache
 
 from voldetail.detail import Detail
 from voldetail.scene.hypertexture import Hypertexture
@@ -121,6 +122,7 @@ class Volume(MarchedVolume):
         return self.proxy.model_copy(update={"kind": "box", "size": (reach[0] + 2 * margin, reach[1] + 2 * margin, SHEET)})
 
 
+@lru_cache(maxsize=8)  # asked by both objectives and the space, and a mesh is read for each try
 def fitting_edge(proxy: ProxySetup, view: View, *, solid: bool, whole_plane: bool) -> float:
     """Return the edge of cells for a fit: SOLID_PIXELS or MEDIUM_PIXELS, more where baking would take over FIT_SECONDS."""
     edge = (SOLID_PIXELS if solid else MEDIUM_PIXELS) * view.pixel
