@@ -1,0 +1,1 @@
+"""Textures: how even they are, and tiles of them."""
