@@ -18,9 +18,13 @@ PATCH = 11
 
 RADIUS = PATCH // 2
 
-VOTE_SIGMA = 1.6
-"""Standard deviation in pixels of the weights with which a patch's pixels vote: its centre knows best. Tuned on ten
-photographs of the test data: equal weights blur what patches disagree on, and a narrower window shows their borders."""
+SEARCH_SIGMA = float("inf")
+"""Standard deviation in pixels of the weights with which a patch's pixels vote between two searches: all alike, so that
+overlapping patches come to agree (Gaussians of 1.6 and 4 pixels left seams and stones cut in half)."""
+
+LAST_SIGMA = 2.0
+"""The same in the last vote: its centre knows best, and narrow weights do not blur what patches still disagree on. Both
+tuned on ten photographs of the test data."""
 
 
 def packed(picture: NDArray[Any]) -> Float:
@@ -89,20 +93,23 @@ def voted(
     return total
 
 
-def vote_weights() -> Float:
+def vote_weights(sigma: float) -> Float:
     """Weights (PATCH,) of a patch's rows and columns, a Gaussian; they add up to one."""
     offset = np.arange(PATCH) - RADIUS
-    window = np.exp(-(offset**2) / (2 * VOTE_SIGMA**2))
+    window = np.exp(-(offset**2) / (2 * sigma**2))
     return Float((window / window.sum()).astype(np.float32))
 
 
-def vote(field: NDArray[np.uint32], source: NDArray[Any]) -> NDArray[np.float32]:
-    """A tile (N, M, C) by vote of the patches of `source` (H, W, C) that `field` (N, M) names by their first pixel."""
+def vote(field: NDArray[np.uint32], source: NDArray[Any], sigma: float) -> NDArray[np.float32]:
+    """A tile (N, M, C) by vote of the patches of `source` (H, W, C) that `field` (N, M) names by their first pixel.
+
+    `sigma` is the standard deviation of the votes' weights in pixels.
+    """
     height, width = field.shape
     padded = UInt32(wrapped(field).ravel())
     stride = dr.opaque(UInt32, width + 2 * RADIUS)
     at = UInt32(pixel_numbers(height, width, width + 2 * RADIUS))
-    source_width, weights = dr.opaque(UInt32, source.shape[1]), vote_weights()
+    source_width, weights = dr.opaque(UInt32, source.shape[1]), vote_weights(sigma)
     dr.make_opaque(padded, at, weights)
     groups = []
     for first in range(0, source.shape[2], 4):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from voldetail.errors import InputError
 from voldetail.texture.patchmatch import from_centres
-from voldetail.texture.patchmatch_arrays import PATCH, RADIUS, vote
+from voldetail.texture.patchmatch_arrays import LAST_SIGMA, PATCH, RADIUS, vote
 
 LEAST_LENGTH = 1e-6
 """A mean of normals shorter than this has no direction: the normal points at the viewer then."""
@@ -36,7 +36,7 @@ def carry(correspondence: NDArray[Any], other: NDArray[Any], *, normals: bool = 
         raise InputError(f"The map to be carried along has {width} x {height} pixels and not the photo's; give one of its size.")
     if normals and planes.shape[2] != 3:
         raise InputError(f"A map of normals has three channels, and this one {planes.shape[2]}; leave out what is no normal.")
-    tile = vote(from_centres(where, width), planes)
+    tile = vote(from_centres(where, width), planes, LAST_SIGMA)
     if normals:
         length = np.linalg.norm(tile, axis=2, keepdims=True)
         tile = np.where(length > LEAST_LENGTH, tile / np.maximum(length, LEAST_LENGTH), np.float32([0, 0, 1]))

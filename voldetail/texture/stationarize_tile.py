@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from voldetail.errors import InputError
 from voldetail.texture.patchmatch import centres, differences, enlarged, search
-from voldetail.texture.patchmatch_arrays import PATCH, vote
+from voldetail.texture.patchmatch_arrays import PATCH, SEARCH_SIGMA, vote
 from voldetail.texture.patchmatch_source import UNIFORMITY, Source
 from voldetail.texture.patchmatch_vote import carry
-from voldetail.texture.stationarity_colour import from_lab, usable
+from voldetail.texture.stationarity_colour import from_lab, to_lab, usable
 from voldetail.texture.stationarity_measure import Measure, check_measure, checked_sigma, stationarity
 from voldetail.texture.stationarize_levels import Exemplar, Level, checked_size, exemplar, levels
 from voldetail.texture.stationarize_project import match_histogram, project
@@ -111,8 +111,8 @@ def stationarize(
         for done, level in maker.run():
             if on_progress is not None:
                 spent = time.monotonic() - started
-                costs = maker.costs() if with_costs else None
-                on_progress(TileProgress(done, maker.planned, level.side, spent, spent * maker.left(done), costs))
+                seen = maker.costs() if with_costs else None
+                on_progress(TileProgress(done, maker.planned, level.side, spent, spent * maker.left(done), seen))
     except KeyboardInterrupt:
         if maker.finished_levels == 0:
             raise
@@ -121,8 +121,9 @@ def stationarize(
     correspondence = centres(maker.field, use.shape[1])
     words = f"{left_out} pixels of the photo that are NaN or infinite were not used." if left_out else ""
     seconds = time.monotonic() - started
-    return Tile(carry(correspondence, pixels), correspondence, maker.final_costs(), measure, float(np.median(widths)), seed,
-                seconds, interrupted, words)  # fmt: skip
+    tile = carry(correspondence, pixels)
+    costs = maker.final_costs(tile)
+    return Tile(tile, correspondence, costs, measure, float(np.median(widths)), seed, seconds, interrupted, words)
 
 
 def _sigmas(sigma: float | NDArray[Any] | None, size: int) -> float | NDArray[np.float64]:
@@ -179,7 +180,7 @@ class _Maker:
             tile = pixels[self.rng.integers(0, len(pixels), field.shape)]
         else:
             field = enlarged(self.field, self.example.source.shape, example.source, level.side)
-            tile = vote(field, example.lab)
+            tile = vote(field, example.lab, SEARCH_SIGMA)
         self.level, self.example, self.field, self.tile = level, example, field, tile
 
     def _iterate(self, done: int) -> None:
@@ -190,7 +191,7 @@ class _Maker:
         self.field, _ = search(
             tile, self.example.source, self.field, rng=self.rng, sweep=done, uniformity=self.uniformity
         )
-        self.tile = vote(self.field, self.example.lab)
+        self.tile = vote(self.field, self.example.lab, SEARCH_SIGMA)
 
     def _sigma(self, level: Level) -> float | NDArray[np.float64]:
         """sigma in pixels of the level."""
@@ -208,8 +209,9 @@ class _Maker:
         """Costs of the present tile, with the present field for eq. 5's most similar patches."""
         return self._costs(differences(self.tile, self.example.source, self.field))
 
-    def final_costs(self) -> Costs:
-        """As `costs`, after one more search on the tile as it is: closer to eq. 5's minimum."""
+    def final_costs(self, tile: Array) -> Costs:
+        """As `costs`, for the tile that is returned, after one more search on it: closer to eq. 5's minimum."""
+        self.tile = to_lab(tile)
         _, found = search(self.tile, self.example.source, self.field, rng=self.rng)
         return self._costs(found)
 
