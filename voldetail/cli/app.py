@@ -11,6 +11,7 @@ from voldetail.cli.compare_command import compare
 from voldetail.cli.fit_command import fit
 from voldetail.cli.render_command import relight, render
 from voldetail.cli.show_command import schema, show
+from voldetail.cli.stationarize_command import stationarity, stationarize
 
 MOST_THREADS = 1024
 
@@ -23,7 +24,7 @@ app = typer.Typer(
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (fit, render, relight, compare, show, schema):
+for command in (fit, render, relight, compare, stationarize, stationarity, show, schema):
     app.command()(command)
 
 

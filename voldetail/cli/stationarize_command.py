@@ -1,0 +1,203 @@
+"""`voldetail stationarize` and `voldetail stationarity`: tiles that repeat unseen, and how even a texture is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.table import Table
+
+from voldetail.cli.console import output, remarks
+from voldetail.cli.outputs import check_file
+from voldetail.cli.threads import use_threads
+from voldetail.errors import InputError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from voldetail.texture.stationarize_tile import Tile, TileProgress
+
+MEASURE_HELP = "What has to be alike everywhere: histogram, moments2, moments3, moments4, mean, steerable; none for plain PatchMatch."
+MEASURED_SIDE = 1024  # pixels: a larger photo is measured smaller, in seconds instead of minutes
+UNITS = {"histogram": "L*a*b*", "steerable": "L*a*b*"}
+
+_Photo = Annotated[Path, typer.Argument(help="A photo of a texture.")]
+_Mask = Annotated[Path | None, typer.Option(help="A picture of the photo's size: white is used.")]
+_Pairs = list[tuple[Path, Path]] | None
+
+
+def stationarize(
+    context: typer.Context,
+    photo: _Photo,
+    out: Annotated[Path, typer.Option("--output", "-o", help="The tile: .png, .jpg or .exr (linear).")],
+    measure: Annotated[str, typer.Option(help=MEASURE_HELP)] = "histogram",
+    sigma: Annotated[
+        float | None,
+        typer.Option(help="Size in pixels of the neighbourhoods that have to be alike; default an eighth of the tile. Smaller is evener."),
+    ] = None,
+    levels: Annotated[
+        int | None, typer.Option(help="Make so many tiles instead, from the evenest to the least even: TILE-1.png and so on.")
+    ] = None,
+    pixels: Annotated[int, typer.Option("--size", help="The tile's side in pixels.")] = 256,
+    mask: _Mask = None,
+    carry: Annotated[
+        _Pairs, typer.Option(metavar="MAP OUT", help="Tile a map of the photo's size (height, albedo) along with it.")
+    ] = None,
+    carry_normals: Annotated[_Pairs, typer.Option(metavar="MAP OUT", help="The same for a map of normals.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="The root of all random numbers.")] = 0,
+) -> None:
+    """Make a tile from a photo that repeats without seams and without a visible pattern.
+
+    Ctrl-C ends the search with the best so far.
+    """
+    from voldetail.image import check_suffix
+    from voldetail.texture.stationarize_control import palette
+    from voldetail.texture.stationarize_levels import checked_size
+    from voldetail.texture.stationarize_tile import stationarize as make
+
+    if sigma is not None and levels is not None:
+        raise InputError("--sigma and --levels were both given; choose one.")
+    targets = [out] if levels is None else [out.with_stem(f"{out.stem}-{i + 1}") for i in range(max(levels, 0))]
+    if levels is not None and (carry or carry_normals):
+        raise InputError("--carry and --levels were both given; choose a level's sigma first, then carry maps with --sigma.")
+    for target in [*targets, *(pair[1] for pair in [*(carry or []), *(carry_normals or [])])]:
+        check_suffix(target)
+        check_file(target)
+    picture, use = _read(photo, mask)
+    checked_size(pixels, use.shape)
+    maps = [(*pair, False) for pair in carry or []] + [(*pair, True) for pair in carry_normals or []]
+    carried = [(_read_map(path, use.shape, normals), target, normals) for path, target, normals in maps]
+    options: dict[str, Any] = {"measure": None if measure == "none" else measure, "mask": use, "seed": seed}
+    use_threads(context.obj)
+    with remarks().status("reading the photo") as status:
+        tell = _teller(status.update)
+        if levels is None:
+            tile = make(picture, pixels, sigma=sigma, on_progress=lambda p: tell(0, 1, p), **options)
+            tiles = [tile]
+        else:
+            tiles = list(palette(picture, pixels, levels=levels, on_progress=tell, **options).tiles)
+    for tile, target in zip(tiles, targets, strict=False):
+        _write(tile, target)
+    for values, target, normals in carried:
+        _write_map(tiles[0], values, target, normals)
+    if tiles[-1].interrupted:
+        output().print("Stopped by you: this is the best so far.")
+
+
+def stationarity(
+    photo: _Photo,
+    heat: Annotated[Path | None, typer.Option(help="A picture of where the photo differs from the rest: .png or .jpg.")] = None,
+    measure: Annotated[str, typer.Option(help="The measure of --heat.")] = "histogram",
+    sigma: Annotated[float | None, typer.Option(help="Size of the neighbourhoods in pixels; default an eighth of the shorter side.")] = None,
+    mask: _Mask = None,
+    tile: Annotated[bool, typer.Option("--tile", help="The photo is a tile: its opposite edges meet.")] = False,
+) -> None:
+    """Measure how far a texture is from being the same everywhere; 0 is perfectly even."""
+    from voldetail.image import check_suffix, resize, resize_mask, save_image
+    from voldetail.report.heat import heat as coloured
+    from voldetail.texture.stationarity_measure import MEASURES, check_measure, checked_sigma
+    from voldetail.texture.stationarity_measure import stationarity as measured
+
+    check_measure(measure)
+    if heat is not None:
+        check_suffix(heat)
+        check_file(heat)
+    picture, use = _read(photo, mask)
+    width = checked_sigma(sigma, use.shape)
+    shrink = min(1.0, MEASURED_SIDE / max(use.shape))
+    if shrink < 1:
+        shape = (round(use.shape[0] * shrink), round(use.shape[1] * shrink))
+        picture, use = resize(picture, shape), resize_mask(use, shape)
+        remarks().print(f"The photo was measured at {shape[1]} x {shape[0]} pixels.", markup=False, soft_wrap=True)
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    for heading in ("measure", "value", "unit"):
+        table.add_column(heading, no_wrap=True)
+    with remarks().status("measuring") as status:
+        for name in MEASURES:
+            status.update(f"measuring: {name}")
+            found = measured(picture, use, measure=name, sigma=max(width * shrink, 1.0), toroidal=tile)
+            table.add_row(name, f"{found.value:.4g}", UNITS.get(name, "L*a*b* squared"))
+            if heat is not None and name == measure:
+                save_image(heat, coloured(found.map, picture))
+    output().print(table)
+    where = f"  {heat}" if heat else ""
+    output().print(f"sigma {width:.3g} pixels{where}", markup=False, soft_wrap=True)
+
+
+def _read(photo: Path, mask: Path | None) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+    """The photo (H, W, 3), linear, and what of it may be used (H, W)."""
+    import numpy as np
+
+    from voldetail.image import load_mask, load_photo
+
+    found = load_photo(photo)
+    use = np.ones(found.pixels.shape[:2], bool) if mask is None else load_mask(mask, found.pixels.shape[:2])
+    if found.opaque is not None:
+        use = use & found.opaque
+    if not use.any():
+        raise InputError(f"All that the mask {mask} leaves of {photo} is transparent; paint other parts white.")
+    return found.pixels, use
+
+
+def _read_map(path: Path, shape: tuple[int, ...], normals: bool) -> NDArray[np.float32]:
+    """A map's stored values (H, W) or (H, W, 3); normals as vectors of -1 to 1."""
+    import numpy as np
+
+    from voldetail.image.load import load_samples
+
+    values = np.asarray(load_samples(path, "map").values, np.float32)
+    if values.shape[:2] != shape:
+        raise InputError(
+            f"The map {path} has {values.shape[1]} x {values.shape[0]} pixels and the photo {shape[1]} x {shape[0]};"
+            " give one of the photo's size."
+        )
+    if not normals:
+        return values
+    if values.ndim != 3:
+        raise InputError(f"The map {path} is grey; normals have three channels, so use --carry for it.")
+    return values if values.min() < 0 else 2 * values - 1  # files without negative numbers hold (n + 1) / 2
+
+
+def _write(tile: Tile, target: Path) -> None:
+    from voldetail.image import save_image
+    from voldetail.report.facts import duration
+
+    save_image(target, tile.tile)
+    costs = tile.costs
+    output().print(
+        f"{target}  {tile.tile.shape[1]} x {tile.tile.shape[0]} pixels, sigma {tile.sigma:.3g}: stationarity"
+        f" {costs.stationarity:.3g}, texture {costs.texture:.3g}, {duration(tile.seconds)}",
+        markup=False, soft_wrap=True,
+    )  # fmt: skip
+    if tile.sentence:
+        remarks().print(tile.sentence, markup=False, soft_wrap=True)
+
+
+def _write_map(tile: Tile, values: NDArray[np.float32], target: Path, normals: bool) -> None:
+    """Write a map's tile with the numbers as they were stored: no sRGB curve comes between."""
+    from voldetail.image import save_image, to_linear
+    from voldetail.texture.patchmatch_vote import carry
+
+    found = carry(tile.correspondence, values, normals=normals)
+    if target.suffix.lower() != ".exr":
+        found = to_linear((found + 1) / 2 if normals else found)
+    save_image(target, found)
+    output().print(f"{target}  the map's tile", markup=False, soft_wrap=True)
+
+
+def _teller(update: Callable[[str], None]) -> Callable[[int, int, TileProgress], None]:
+    """Return what shows how far a tile is, of how many, with the time left."""
+    from voldetail.report.facts import duration
+
+    def tell(number: int, count: int, progress: TileProgress) -> None:
+        one = progress.seconds + progress.seconds_left
+        left = progress.seconds_left + (count - number - 1) * one
+        which = f"tile {number + 1} of {count}: " if count > 1 else ""
+        update(
+            f"{which}{progress.done} of {progress.planned} rounds at {progress.side} pixels, about {duration(left)} left"
+        )
+
+    return tell
