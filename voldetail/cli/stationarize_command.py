@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
     from voldetail.texture.stationarize_tile import Tile, TileProgress
 
-MEASURE_HELP = "What has to be alike everywhere: histogram, moments2, moments3, moments4, mean, steerable; none for plain PatchMatch."
+MEASURE_HELP = (
+    "What has to be alike everywhere: histogram, moments2, moments3, moments4, mean, steerable; or none, for plain PatchMatch."
+)
 MEASURED_SIDE = 1024  # pixels: a larger photo is measured smaller, in seconds instead of minutes
 UNITS = {"histogram": "L*a*b*", "steerable": "L*a*b*"}
 
@@ -36,7 +38,7 @@ def stationarize(
     measure: Annotated[str, typer.Option(help=MEASURE_HELP)] = "histogram",
     sigma: Annotated[
         float | None,
-        typer.Option(help="Size in pixels of the neighbourhoods that have to be alike; default an eighth of the tile. Smaller is evener."),
+        typer.Option(help="Pixels across which everything has to be alike; default a twelfth of the tile; less is evener."),
     ] = None,
     levels: Annotated[
         int | None, typer.Option(help="Make so many tiles instead, from the evenest to the least even: TILE-1.png and so on.")
@@ -91,7 +93,9 @@ def stationarity(
     photo: _Photo,
     heat: Annotated[Path | None, typer.Option(help="A picture of where the photo differs from the rest: .png or .jpg.")] = None,
     measure: Annotated[str, typer.Option(help="The measure of --heat.")] = "histogram",
-    sigma: Annotated[float | None, typer.Option(help="Size of the neighbourhoods in pixels; default an eighth of the shorter side.")] = None,
+    sigma: Annotated[
+        float | None, typer.Option(help="Size of the neighbourhoods in pixels; default a twelfth of the shorter side.")
+    ] = None,
     mask: _Mask = None,
     tile: Annotated[bool, typer.Option("--tile", help="The photo is a tile: its opposite edges meet.")] = False,
 ) -> None:

@@ -24,6 +24,10 @@ JUMPS = (1, 4, 2, 8)
 """Distances over which good matches are passed on besides 1, in turn: a serial scan carries a match across the whole
 tile in one sweep, and a parallel step only as far as it looks."""
 
+COUNT_EVERY = 4
+"""Candidates looked at between two counts of how often each patch is used. Counted once a sweep, all pixels would flee
+one patch and crowd the next, and the use never become even; a count costs as much as one or two candidates."""
+
 SHRINK = 0.5
 """Each random search looks this much nearer than the one before (alpha of Barnes et al. 2009, section 3.2)."""
 
@@ -75,6 +79,7 @@ class _Matcher:
         self.source = source
         self.tile, self.stride = packed(wrapped(tile)), dr.opaque(UInt32, width + 2 * RADIUS)
         self.at = pixel_numbers(height, width, width + 2 * RADIUS)
+        self.uniformity, self.looked_at = uniformity, 0
         self.penalty = source.penalty(field, uniformity)
         self.best = field.ravel().copy()
         self.cost = self._difference(self.at, self.best, np.full(field.size, NEVER, np.float32))
@@ -87,6 +92,9 @@ class _Matcher:
 
     def offer(self, candidates: Field) -> None:
         """Take each pixel's candidate where it is better."""
+        if self.uniformity and self.looked_at and self.looked_at % COUNT_EVERY == 0:
+            self.penalty = self.source.penalty(self.best, self.uniformity)
+        self.looked_at += 1
         patch = candidates.ravel()
         # What a candidate may differ by, given what it costs for being used often.
         limit = self.cost + self.penalty[self.best] - self.penalty[patch]

@@ -78,7 +78,7 @@ def voted(
     those of rows and columns.
     """
     total, row = Array4f(0), UInt32(0)
-    f, offset = UInt32(at), UInt32(0)
+    f = UInt32(at)
     last = PATCH - 1
     while row < PATCH:
         # The patch of the field's row r covers this pixel with its own row PATCH - 1 - r.

@@ -59,9 +59,9 @@ class Source:
         height, width = self.shape
         return np.asarray(np.clip(row, 0, height - PATCH) * width + np.clip(column, 0, width - PATCH), np.uint32)
 
-    def usage(self, patch: NDArray[np.uint32]) -> NDArray[np.float64]:
+    def usage(self, patch: NDArray[np.uint32]) -> NDArray[np.float32]:
         """Omega / omega_best (H, W), the mean over each patch, by its first pixel, when the tile uses the patches `patch`."""
-        counts = np.bincount(patch.ravel(), minlength=self.free.size).reshape(self.shape).astype(np.float64)
+        counts = np.bincount(patch.ravel(), minlength=self.free.size).reshape(self.shape).astype(np.float32)
         # Each chosen patch covers PATCH x PATCH pixels, and a patch's usage is the mean over as many: two boxes,
         # one to either side, so that together they are centred.
         size, last = PATCH, PATCH // 2

@@ -39,5 +39,5 @@ def carry(correspondence: NDArray[Any], other: NDArray[Any], *, normals: bool = 
     tile = vote(from_centres(where, width), planes, LAST_SIGMA)
     if normals:
         length = np.linalg.norm(tile, axis=2, keepdims=True)
-        tile = np.where(length > LEAST_LENGTH, tile / np.maximum(length, LEAST_LENGTH), np.float32([0, 0, 1]))
+        tile = np.where(length > LEAST_LENGTH, tile / np.maximum(length, LEAST_LENGTH), np.array([0, 0, 1], np.float32))
     return np.ascontiguousarray(tile[..., 0] if picture.ndim == 2 else tile, np.float32)

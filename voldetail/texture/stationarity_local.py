@@ -20,6 +20,9 @@ ONE_THREAD = 4 * 65536
 COLUMNS = 256
 """Of a part of a product."""
 
+NOTHING = 1e-7
+"""Weights below this are 0: a float's rounding against the peak, and numbers near 1e-38 are slow to multiply."""
+
 
 @dataclass(frozen=True, eq=False)
 class Neighbourhoods:
@@ -50,7 +53,8 @@ class Neighbourhoods:
         if weight is None:
             return np.asarray(self.total(plane) / np.outer(self.rows.sum(1), self.columns.sum(1)))
         around = self.total(weight)
-        return np.asarray(np.where(around > 0, self.total(plane * weight) / np.where(around > 0, around, 1), 0))
+        found = self.total(np.asarray(plane, np.float32) * weight)
+        return np.asarray(np.where(around > 0, found / np.where(around > 0, around, 1), 0))
 
     def blend(self, fields: Array) -> Array:
         """Values (R, C, n) of the points blended to pixels (H, W, n) with the windows as weights."""
@@ -90,7 +94,8 @@ def product(a: Array, b: Array) -> Array:
 def neighbourhoods(shape: tuple[int, int], sigma: float, spacing: float, toroidal: bool) -> Neighbourhoods:
     """Points about `spacing` pixels apart over a picture of `shape` with Gaussian windows of standard deviation `sigma`
     pixels."""
-    return Neighbourhoods(*(_windows(n, sigma, spacing, toroidal) for n in shape), toroidal)
+    rows, columns = (_windows(n, sigma, spacing, toroidal) for n in shape)
+    return Neighbourhoods(rows, columns, toroidal)
 
 
 def _windows(length: int, sigma: float, spacing: float, toroidal: bool) -> Array:
@@ -99,4 +104,5 @@ def _windows(length: int, sigma: float, spacing: float, toroidal: bool) -> Array
     offset = np.arange(length)[None, :] - centres[:, None]
     # On a torus a window wider than the picture meets itself: the nearest copies on both sides count as well.
     copies = (-1, 0, 1) if toroidal else (0,)
-    return np.asarray(sum(np.exp(-((offset + k * length) ** 2) / (2 * sigma**2)) for k in copies), np.float32)
+    window = np.asarray(sum(np.exp(-((offset + k * length) ** 2) / (2 * sigma**2)) for k in copies))
+    return np.where(window < NOTHING, 0, window).astype(np.float32)

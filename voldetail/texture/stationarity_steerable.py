@@ -25,7 +25,7 @@ depends on what lies there."""
 
 def bands(plane: Array) -> Array:
     """Responses F_o * f of a periodic picture (H, W): (4, H, W)."""
-    high, oriented, low = _gains(plane.shape[0], plane.shape[1])
+    _, oriented, _ = _gains(plane.shape[0], plane.shape[1])
     spectrum = fft.rfft2(plane)
     return np.asarray(fft.irfft2(spectrum * oriented, s=plane.shape, axes=(1, 2)), np.float32)
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -66,7 +67,7 @@ def palette(
             tiles.append(stationarize(photo, size, sigma=sigma, on_progress=tell, **options))
             if tiles[-1].interrupted:
                 break
-        distances = tuple(distance(a.tile, b.tile) for a, b in zip(tiles, tiles[1:], strict=False))
+        distances = tuple(distance(a.tile, b.tile) for a, b in pairwise(tiles))
         if turn + 1 == rounds or tiles[-1].interrupted:
             break
         chosen = even_sigmas(chosen, distances, len(chosen))

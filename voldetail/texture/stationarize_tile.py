@@ -90,7 +90,7 @@ def stationarize(
     `photo` is (H, W, 3) linear, at least as large as the tile; `mask` (H, W), True = use, holes allowed: nothing of
     what it leaves out, nor a NaN, gets into the tile. `measure` says what has to be alike everywhere (see
     `stationarity`), None: nothing, which is plain toroidal PatchMatch. `sigma` is the size of the neighbourhoods that
-    have to be alike, in pixels of the tile, default an eighth of its side; or a map of them (size, size).
+    have to be alike, in pixels of the tile, default a twelfth of its side; or a map of them (size, size).
     `uniformity` weighs that all of the photo is used alike (eq. 6), `alpha` (0 to 1) that its histogram is kept. The
     same seed gives the same tile, whatever the number of threads. With `with_costs` every progress record has them.
     Ctrl-C after the first pyramid level returns the best so far. Raises InputError for what cannot be used.
