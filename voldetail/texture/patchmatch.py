@@ -24,7 +24,7 @@ JUMPS = (1, 4, 2, 8)
 """Distances over which good matches are passed on besides 1, in turn: a serial scan carries a match across the whole
 tile in one sweep, and a parallel step only as far as it looks."""
 
-COUNT_EVERY = 4
+COUNT_EVERY = 2
 """Candidates looked at between two counts of how often each patch is used. Counted once a sweep, all pixels would flee
 one patch and crowd the next, and the use never become even; a count costs as much as one or two candidates."""
 
