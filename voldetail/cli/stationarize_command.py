@@ -28,7 +28,7 @@ UNITS = {"histogram": "L*a*b*", "steerable": "L*a*b*"}
 
 _Photo = Annotated[Path, typer.Argument(help="A photo of a texture.")]
 _Mask = Annotated[Path | None, typer.Option(help="A picture of the photo's size: white is used.")]
-_Pairs = list[tuple[Path, Path]] | None
+_Pairs = list[str] | None
 
 
 def stationarize(
@@ -46,9 +46,9 @@ def stationarize(
     pixels: Annotated[int, typer.Option("--size", help="The tile's side in pixels.")] = 256,
     mask: _Mask = None,
     carry: Annotated[
-        _Pairs, typer.Option(metavar="MAP OUT", help="Tile a map of the photo's size (height, albedo) along with it.")
+        _Pairs, typer.Option(metavar="MAP=OUT", help="Tile a map of the photo's size (height, albedo) along with it.")
     ] = None,
-    carry_normals: Annotated[_Pairs, typer.Option(metavar="MAP OUT", help="The same for a map of normals.")] = None,
+    carry_normals: Annotated[_Pairs, typer.Option(metavar="MAP=OUT", help="The same for a map of normals.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="The root of all random numbers.")] = 0,
 ) -> None:
     """Make a tile from a photo that repeats without seams and without a visible pattern.
@@ -65,12 +65,13 @@ def stationarize(
     targets = [out] if levels is None else [out.with_stem(f"{out.stem}-{i + 1}") for i in range(max(levels, 0))]
     if levels is not None and (carry or carry_normals):
         raise InputError("--carry and --levels were both given; choose a level's sigma first, then carry maps with --sigma.")
-    for target in [*targets, *(pair[1] for pair in [*(carry or []), *(carry_normals or [])])]:
+    maps = [(*_pair(text, "--carry"), False) for text in carry or []]
+    maps += [(*_pair(text, "--carry-normals"), True) for text in carry_normals or []]
+    for target in [*targets, *(to for _, to, _ in maps)]:
         check_suffix(target)
         check_file(target)
     picture, use = _read(photo, mask)
     checked_size(pixels, use.shape)
-    maps = [(*pair, False) for pair in carry or []] + [(*pair, True) for pair in carry_normals or []]
     carried = [(_read_map(path, use.shape, normals), target, normals) for path, target, normals in maps]
     options: dict[str, Any] = {"measure": None if measure == "none" else measure, "mask": use, "seed": seed}
     use_threads(context.obj)
@@ -129,6 +130,14 @@ def stationarity(
     output().print(table)
     where = f"  {heat}" if heat else ""
     output().print(f"sigma {width:.3g} pixels{where}", markup=False, soft_wrap=True)
+
+
+def _pair(text: str, option: str) -> tuple[Path, Path]:
+    """The two files of "MAP=OUT"; a name with = in it may be the first's."""
+    first, _, second = text.rpartition("=")
+    if not first or not second:
+        raise InputError(f"{option} {text!r} is not understood; give MAP=OUT, e.g. height.png=height-tile.exr.")
+    return Path(first), Path(second)
 
 
 def _read(photo: Path, mask: Path | None) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
