@@ -276,3 +276,13 @@ def test_the_command_refuses_in_one_sentence(
     assert words in told
     assert told.count("\n") == 1
     assert not (files / "tile.png").exists()
+
+
+def test_a_stopped_palette_keeps_its_tiles() -> None:
+    def stop(number: int, count: int, progress: TileProgress) -> None:
+        if number == 1:
+            raise KeyboardInterrupt
+
+    found = palette(photo(), 32, levels=3, on_progress=stop)
+    assert found.interrupted
+    assert len(found.tiles) == 1

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from voldetail.cli.progress import ProgressView
     from voldetail.texture.stationarize_tile import Tile, TileProgress
 
 MEASURE_HELP = (
@@ -55,6 +56,7 @@ def stationarize(
 
     Ctrl-C ends the search with the best so far.
     """
+    from voldetail.cli.progress import ProgressView
     from voldetail.image import check_suffix
     from voldetail.texture.stationarize_control import palette
     from voldetail.texture.stationarize_levels import checked_size
@@ -75,18 +77,19 @@ def stationarize(
     carried = [(_read_map(path, use.shape, normals), target, normals) for path, target, normals in maps]
     options: dict[str, Any] = {"measure": None if measure == "none" else measure, "mask": use, "seed": seed}
     use_threads(context.obj)
-    with remarks().status("reading the photo") as status:
-        tell = _teller(status.update)
+    with ProgressView(remarks()) as view:
+        tell = _teller(view)
         if levels is None:
             tile = make(picture, pixels, sigma=sigma, on_progress=lambda p: tell(0, 1, p), **options)
-            tiles = [tile]
+            tiles, stopped = [tile], tile.interrupted
         else:
-            tiles = list(palette(picture, pixels, levels=levels, on_progress=tell, **options).tiles)
+            found = palette(picture, pixels, levels=levels, on_progress=tell, **options)
+            tiles, stopped = list(found.tiles), found.interrupted
     for tile, target in zip(tiles, targets, strict=False):
         _write(tile, target)
     for values, target, normals in carried:
         _write_map(tiles[0], values, target, normals)
-    if tiles[-1].interrupted:
+    if stopped:
         output().print("Stopped by you: this is the best so far.")
 
 
@@ -201,16 +204,22 @@ def _write_map(tile: Tile, values: NDArray[np.float32], target: Path, normals: b
     output().print(f"{target}  the map's tile", markup=False, soft_wrap=True)
 
 
-def _teller(update: Callable[[str], None]) -> Callable[[int, int, TileProgress], None]:
-    """Return what shows how far a tile is, of how many, with the time left."""
+def _teller(view: ProgressView) -> Callable[[int, int, TileProgress], None]:
+    """Return what shows how far a tile is, of how many, with the time left: always on a terminal, else now and then."""
+    from voldetail.cli.progress import LINE_SECONDS
     from voldetail.report.facts import duration
 
+    last = view.clock()
+
     def tell(number: int, count: int, progress: TileProgress) -> None:
+        nonlocal last
+        if view.live is None and view.clock() - last < LINE_SECONDS:
+            return
+        last = view.clock()
         one = progress.seconds + progress.seconds_left
         left = progress.seconds_left + (count - number - 1) * one
         which = f"tile {number + 1} of {count}: " if count > 1 else ""
-        update(
-            f"{which}{progress.done} of {progress.planned} rounds at {progress.side} pixels, about {duration(left)} left"
-        )
+        at = f"{progress.done} of {progress.planned} rounds, at {progress.side} pixels"
+        view.step(f"{which}{at}, about {duration(left)} left")
 
     return tell

@@ -13,8 +13,9 @@ import drjit as dr
 import numpy as np
 from drjit.llvm import Float, UInt32
 from numpy.typing import NDArray
+from scipy import ndimage
 
-from voldetail.texture.patchmatch_arrays import PATCH, RADIUS, packed, pixel_numbers, squared_difference, wrapped
+from voldetail.texture.patchmatch_arrays import RADIUS, packed, pixel_numbers, squared_difference, wrapped
 from voldetail.texture.patchmatch_source import NEVER, Source
 
 Field = NDArray[np.uint32]
@@ -147,11 +148,6 @@ def allowed(field: Field, source: Source) -> Field:
     """The field with every patch that the mask forbids replaced by the nearest that it allows."""
     if source.free.all():
         return field
-    from scipy import ndimage
-
     rows, columns = ndimage.distance_transform_edt(~source.free, return_distances=False, return_indices=True)
     nearest = (rows * source.shape[1] + columns).ravel()
     return np.asarray(nearest[field], np.uint32)
-
-
-__all__ = ["PATCH", "RADIUS", "Field", "Source", "allowed", "centres", "differences", "enlarged", "from_centres", "search"]

@@ -6,7 +6,7 @@ Symbols: sigma_j, the sizes of neighbourhood that were tried; d_j, how much the 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -28,11 +28,13 @@ the whole tile and asks for nothing."""
 
 @dataclass(frozen=True, eq=False)
 class Palette:
-    """Tiles of growing sigma, and `distances`, how much each differs from the next; `sigmas` in pixels of the tile."""
+    """Tiles of growing sigma, and `distances`, how much each differs from the next; `sigmas` in pixels of the tile;
+    `interrupted`: not all that were asked for."""
 
     sigmas: tuple[float, ...]
     tiles: tuple[Tile, ...]
     distances: tuple[float, ...]
+    interrupted: bool = False
 
 
 def palette(
@@ -50,28 +52,47 @@ def palette(
     `sigmas` in pixels; default: `levels` of them (2 to 20) from 1/32 to 1/2 of `size`, in equal ratios. With `even`
     they are then moved so that `distance` is about the same from each tile to the next, and the tiles made anew. Further
     `options` are those of `stationarize`. `on_progress` gets the number of the tile, how many there are, and how far it
-    is. After Ctrl-C the palette ends with the tile it came in. Raises InputError as `stationarize`.
+    is. After Ctrl-C the palette ends with the tiles there are. Raises InputError as `stationarize`.
     """
     if not 2 <= levels <= MOST_LEVELS:
         raise InputError(f"{levels} levels are out of range; give 2 to {MOST_LEVELS}.")
     chosen = tuple(sigmas) if sigmas is not None else spread(size, levels)
     rounds = 2 if even else 1
-    for turn in range(rounds):
-        tiles: list[Tile] = []
-        for sigma in chosen:
 
-            def tell(progress: TileProgress, number: int = turn * len(chosen) + len(tiles)) -> None:
-                if on_progress is not None:
-                    on_progress(number, rounds * len(chosen), progress)
+    def tell(number: int, progress: TileProgress) -> None:
+        if on_progress is not None:
+            on_progress(number, rounds * len(chosen), progress)
 
-            tiles.append(stationarize(photo, size, sigma=sigma, on_progress=tell, **options))
-            if tiles[-1].interrupted:
-                break
-        distances = tuple(distance(a.tile, b.tile) for a, b in pairwise(tiles))
-        if turn + 1 == rounds or tiles[-1].interrupted:
+    made = _series(photo, size, chosen, tell, options)
+    if not even or made.interrupted:
+        return made
+    evener = even_sigmas(chosen, made.distances, len(chosen))
+    try:
+        return _series(photo, size, evener, lambda number, progress: tell(len(chosen) + number, progress), options)
+    except KeyboardInterrupt:  # before there was one of the new tiles
+        return replace(made, interrupted=True)
+
+
+def _series(
+    photo: NDArray[Any], size: int, sigmas: Sequence[float], tell: Callable[[int, TileProgress], None], options: dict[str, Any]
+) -> Palette:
+    """One tile of each sigma; after Ctrl-C those that there are, if any."""
+    tiles: list[Tile] = []
+    interrupted = False
+    for number, sigma in enumerate(sigmas):
+        try:
+            tile = stationarize(photo, size, sigma=sigma, on_progress=lambda progress: tell(number, progress), **options)
+        except KeyboardInterrupt:
+            if not tiles:
+                raise
+            interrupted = True
             break
-        chosen = even_sigmas(chosen, distances, len(chosen))
-    return Palette(chosen[: len(tiles)], tuple(tiles), distances)
+        tiles.append(tile)
+        if tile.interrupted:
+            interrupted = True
+            break
+    distances = tuple(distance(a.tile, b.tile) for a, b in pairwise(tiles))
+    return Palette(tuple(sigmas[: len(tiles)]), tuple(tiles), distances, interrupted)
 
 
 def spread(size: int, levels: int) -> tuple[float, ...]:

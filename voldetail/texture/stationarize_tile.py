@@ -7,7 +7,7 @@ towards e's in each iteration; sigma, the size of the neighbourhoods that have t
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from voldetail.errors import InputError
 from voldetail.texture.patchmatch import centres, differences, enlarged, search
 from voldetail.texture.patchmatch_arrays import PATCH, SEARCH_SIGMA, vote
-from voldetail.texture.patchmatch_source import UNIFORMITY, Source
+from voldetail.texture.patchmatch_source import UNIFORMITY
 from voldetail.texture.patchmatch_vote import carry
 from voldetail.texture.stationarity_colour import from_lab, to_lab, usable
 from voldetail.texture.stationarity_measure import Measure, check_measure, checked_sigma, stationarity
@@ -155,8 +155,8 @@ class _Maker:
         self.field: NDArray[np.uint32]
         self.tile: Array
 
-    def run(self) -> Any:
-        """Go through all levels and iterations; yields the number of iterations done and the level after each."""
+    def run(self) -> Iterator[tuple[int, Level]]:
+        """Go through all levels and iterations; yields the number of iterations done, and the level, after each."""
         done = 0
         for level in self.plan:
             self._enter(level)
@@ -220,6 +220,3 @@ class _Maker:
         sigma = float(np.median(self._sigma(self.level)))
         even = stationarity(from_lab(self.tile), measure=self.measure or "histogram", sigma=sigma, toroidal=True)
         return Costs(texture, even.value)
-
-
-__all__ = ["ALPHA", "SIZE", "Costs", "Source", "Tile", "TileProgress", "stationarize"]
