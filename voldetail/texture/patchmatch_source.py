@@ -19,8 +19,8 @@ from voldetail.texture.patchmatch_arrays import PATCH, packed
 
 UNIFORMITY = 0.05
 """Cost of a patch that is used as often as omega_best, against a patch's cost where it differs from the source's mean
-by the source's own variance. Tuned on photographs of the
-test data: with none a few patches fill the tile, and three times as much forces the photo's extremes into it."""
+by the source's own variance. Chosen on three photographs of the test data (gravel, a slab, a metal plate): with none a
+few patches fill the tile, and three times as much forces the photo's extremes into it."""
 
 NEVER = 1e30
 """Cost of a patch that must not be used."""

@@ -30,7 +30,8 @@ SIZE = 256
 """Side of a tile in pixels if none is given (section 4.1)."""
 
 ALPHA = 0.5
-"""Of the first iteration; it falls to 0 in the last, so that patches have the final word. Tuned on ten photographs."""
+"""Of the first iteration; it falls to 0 in the last, so that patches have the final word. Chosen on two photographs of
+the test data (gravel, a metal plate): with 0 the tile's colours stray from the photo's, and 1 costs texture."""
 
 
 @dataclass(frozen=True)
