@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from voldetail import __version__
+from voldetail.cli.bake_command import bake
 from voldetail.cli.compare_command import compare
 from voldetail.cli.fit_command import fit
 from voldetail.cli.render_command import relight, render
@@ -23,7 +24,7 @@ app = typer.Typer(
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (fit, render, relight, compare, show, schema):
+for command in (fit, render, relight, bake, compare, show, schema):
     app.command()(command)
 
 

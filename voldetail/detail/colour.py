@@ -90,5 +90,5 @@ class ColourTexture(ColourRecord):
             for j, b in enumerate(rows):
                 product = sum(p * q for p, q in zip(a, b, strict=True))
                 if abs(product - (i == j)) > ORTHONORMAL_TOLERANCE:
-                    raise ValueError("the axes are no rotation: each has to have length 1 and stand at right angles to the others")
+                    raise ValueError("the axes are no rotation: each has to have length 1 and be at right angles to the others")
         return self
