@@ -54,8 +54,9 @@ def save_detail(path: Path | str, detail: Detail) -> None:
 def detail_to_text(detail: Detail) -> str:
     """The text of the detail file; raises InputError if `provenance.settings` holds what JSON cannot."""
     data = {"format": FORMAT, **detail.model_dump(mode="json")}
-    if detail.medium is None:
-        del data["medium"]  # most details have none, and a reader is not to wonder about it
+    for group in ("medium", "colour"):
+        if data[group] is None:
+            del data[group]  # most details have none, and a reader is not to wonder about it
     try:
         text = json.dumps(_rounded(data), indent=2, ensure_ascii=False, allow_nan=False)
     except ValueError:
