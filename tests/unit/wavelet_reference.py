@@ -51,7 +51,7 @@ def moves(nodes: NDArray[np.int64], axis: int, band: int, seed: int, dims: int, 
 def noise(points: Floats, band: int, seed: int, tile: NDArray[np.float32]) -> Floats:
     """Values (N, channels) at points (N, dims) in texels."""
     dims, side = points.shape[1], tile.shape[0]
-    place = (points @ TURN.T if dims == 3 else points) / 2.0**band + PHASE
+    place = (points @ TURN.T if dims == 3 else points) / 2.0**band + PHASE + (0.618034 * band if band >= 2 else 0.0)
     middle = np.floor(place + 0.5).astype(np.int64)
     total = np.zeros((len(points), tile.shape[-1]))
     for step in itertools.product((-1, 0, 1), repeat=dims):

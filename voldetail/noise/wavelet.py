@@ -30,6 +30,12 @@ from voldetail.noise.octave import TURN
 from voldetail.noise.wavelet_spectrum import PHASE
 from voldetail.noise.wavelet_tile import CHANNELS, SIDES, wavelet_tile
 
+FIRST_MOVED = 2
+BAND_STEP = 0.618034
+"""From band FIRST_MOVED on, each band's lattice is moved by this share of a coefficient against the one before, so that the
+edges between coefficients of all bands do not meet in the same lines. A raster of texels meets four or more places in a
+coefficient of those bands, and so their variance does not depend on the phase (noise.wavelet_spectrum.PHASE)."""
+
 
 class WaveletNoise:
     """A tile on the device, and the noise made of it: ``dims`` coordinates, CHANNELS independent noises at once.
@@ -55,10 +61,12 @@ class WaveletNoise:
         scale: 2^-band, coefficients a texel. band, seed: UInt32, which of the many independent noises.
         """
         one = self.float_type(1.0)
+        index = self.float_type(self.uint_type(band))
+        phase = dr.select(index < FIRST_MOVED, PHASE, dr.fma(index, BAND_STEP, PHASE))
         turned = _turned(points) if self.dims == 3 else points
         nodes, weights = [], []
         for x in turned:
-            place = dr.fma(x, scale * one, PHASE)
+            place = dr.fma(x, scale * one, phase)
             nearest = dr.floor(place + 0.5)
             t = place - nearest
             nodes.append(self.int_type(nearest))

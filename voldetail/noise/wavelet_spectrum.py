@@ -20,7 +20,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from voldetail.noise.wavelet_tile import GAIN, GRAM, projection
+from voldetail.noise.wavelet_tile import GAIN, projection
 
 Floats = NDArray[np.float64]
 

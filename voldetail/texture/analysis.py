@@ -141,7 +141,7 @@ def _checked(
     else:
         used = np.asarray(mask)
         if used.shape != (rows, columns):
-            raise InputError(f"The mask has the shape {used.shape} and the photo {(rows, columns)}; give one of the photo's size.")
+            raise InputError(f"The mask has the shape {used.shape} and the photo {(rows, columns)}; give one of its size.")
         used = used.astype(bool)
         count = int(np.count_nonzero(used))
         if count < FEWEST_PIXELS:

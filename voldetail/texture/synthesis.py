@@ -98,9 +98,8 @@ class Evaluator:
         if footprint is not None:
             width = max(width, dr.width(footprint))
         packet = self.packet
-        state = (
-            dr.zeros(self.uint_type, width), dr.full(self.float_type, 1.0, width), dr.zeros(packet, width), dr.zeros(packet, width)
-        )  # fmt: skip
+        band, scale = dr.zeros(self.uint_type, width), dr.full(self.float_type, 1.0, width)
+        state = (band, scale, dr.zeros(packet, width), dr.zeros(packet, width))
 
         def body(band: Any, scale: Any, total: Any, removed: Any) -> tuple[Any, ...]:
             amplitude = dr.gather(packet, self.amplitudes, band)
