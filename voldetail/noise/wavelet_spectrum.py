@@ -51,7 +51,7 @@ def kernels() -> Floats:
     return found
 
 
-def spline(x: Floats) -> Floats:
+def spline(x: NDArray[np.floating]) -> NDArray[np.floating]:
     """Return the quadratic B-spline of unit integral, centred on 0."""
     x = np.abs(x)
     return np.where(x < 0.5, 0.75 - x * x, np.where(x < 1.5, 0.5 * (1.5 - x) ** 2, 0.0))

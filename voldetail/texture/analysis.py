@@ -103,12 +103,13 @@ def _channel(
     if deviation < CONSTANT:
         return ColourChannel(weights=(0.0,), curve=(round(mean, 7),) * len(PLACES))
     if match_histogram:
+        z: NDArray[np.floating]
         z, quantiles = gaussianise(values, PLACES)
         curve = fitted_curve(quantiles, mean, deviation)
     else:
         z, curve = (values - np.float32(mean)) / np.float32(deviation), gaussian_curve(mean, deviation)
     if used is None:
-        picture = z.reshape(shape)
+        picture = np.asarray(z, np.float32).reshape(shape)
     else:
         picture = np.zeros(shape, np.float32)
         picture[used] = z

@@ -13,7 +13,7 @@ LEVELS = 1 << 16
 65 536th of the range share their mean rank, as equal ones have to."""
 
 
-def gaussianise(values: Floats, places: Floats) -> tuple[Floats, Floats]:
+def gaussianise(values: NDArray[np.floating], places: Floats) -> tuple[NDArray[np.float32], Floats]:
     """Return (z, quantiles): ``values`` (N,) as normal deviates of the same order, and their quantiles at ``places``.
 
     z = Phi^-1(mean rank / N); places are normal deviates. The values must not all be equal.

@@ -68,7 +68,7 @@ def _bins(shape: tuple[int, int]) -> tuple[NDArray[np.int64], Floats]:
     return band.ravel(), weight.ravel()
 
 
-def band_powers(picture: Floats, mask: NDArray[np.bool_] | None = None, share: float = TAPER) -> Floats:
+def band_powers(picture: NDArray[np.floating], mask: NDArray[np.bool_] | None = None, share: float = TAPER) -> Floats:
     """Return P_b (bands,) of a picture (H, W) of zero mean, finest first; their sum is the variance, about.
 
     Outside the mask the picture counts as its mean, 0, and the power is divided by the share of the taper's square that lies

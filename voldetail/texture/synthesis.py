@@ -50,7 +50,8 @@ def colour_at(texture: ColourTexture, points: tuple[Any, ...], footprint: Any = 
     """
     if any(channel.lobes for channel in texture.channels):
         raise InputError(f"The texture {texture.name} is made of lobes and not of wavelet bands; it is evaluated elsewhere.")
-    return evaluator(texture, len(points), type(points[0])).colour(points, footprint)
+    float_type: Any = type(points[0])
+    return evaluator(texture, len(points), float_type).colour(points, footprint)
 
 
 class Evaluator:
