@@ -52,7 +52,8 @@ def test_relief_that_makes_all_the_contrast_leaves_none():
 def test_what_is_of_another_size_stays():
     # Fine shading does not touch coarse stains.
     stains = field(1, 12, 0.3)
-    found = np.log(luminance(albedo_apart(photo(stains, field(2, 1.5, 0.3)), MASK, [grey(field(9 + i, 1.5, 0.3)) for i in range(3)])))
+    shadings = [grey(field(9 + i, 1.5, 0.3)) for i in range(3)]
+    found = np.log(luminance(albedo_apart(photo(stains, field(2, 1.5, 0.3)), MASK, shadings)))
     assert np.corrcoef(found.ravel(), stains.ravel())[0, 1] > 0.9
     assert found.std() == pytest.approx(0.3, rel=0.15)
 
