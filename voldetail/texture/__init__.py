@@ -1,0 +1,1 @@
+"""Textures by example: what a photo's colours are made of."""
