@@ -8,7 +8,7 @@ Symbols
     n_bs     independent bins in it: those of the half plane, times (sum w^2)^2 / (n sum w^4) for the window w
     A_b      sqrt(mean_s (r_bs - 1)^2 - its mean under isotropy), the anisotropy of a band: 0 none, 1 the sectors' power
              strays from the mean by as much as the mean
-    A        sqrt(sum_b p_b A_b^2) for the bands' shares p_b of the power
+    A        sqrt(sum_b p_b A_b^2), p_b the bands' shares of the power, less where a band has few bins (RELIABLE_BINS)
 
 The periodogram of an isotropic Gaussian field has r_bs near Gamma(n_bs) / n_bs whatever its radial spectrum, so the law of the
 statistic A^2 under isotropy is drawn from Gamma numbers. A large photo would see the least tilt of the camera, which makes
@@ -35,12 +35,16 @@ TAPER = 0.5
 LEAST_CYCLES = 3.0
 """Cycles across the shorter side below which directions are not compared: a sector has no whole bin there."""
 
-LEVEL = 0.01
+LEVEL = 0.05
 """Probability that an isotropic field passes the statistical part of the test."""
 
-EFFECT = 0.3
+EFFECT = 0.25
 """A below which a spectrum counts as isotropic in any case; tuned on photos: an isotropic field stretched by 1.2 has about half
 of it, gravel in slanting light is below and wood, ripples and rock layers are far above."""
+
+RELIABLE_BINS = 24
+"""Independent bins at which a band counts with half of its share: the coarsest octave has most of a steep spectrum's power and
+hardly a bin a sector, and its chance would drown what the others tell."""
 
 DRAWS = 2000
 RING_BINS = 1.5
@@ -100,7 +104,7 @@ def _measured(
     ratio = power / np.maximum(level[ring], np.finfo(float).tiny)
     octave = np.floor(-np.log2(np.minimum(radius, 0.4999))).astype(int)
     rng = np.random.default_rng(0)
-    squares, shares, waves, law = [], [], [], []
+    squares, shares, bins, waves, law = [], [], [], [], []
     for band in range(1, octave.max() + 1):
         here = octave == band
         count = np.bincount(sector[here], minlength=SECTORS)
@@ -113,11 +117,14 @@ def _measured(
         squares.append(float(((mean - 1) ** 2).mean() - drawn.mean()))
         law.append(drawn - drawn.mean())
         shares.append(float(power[here].sum()))
+        bins.append(float(count.sum() * efficiency))
         waves.append(2.0 ** (band + 1))
     share = np.array(shares) / max(sum(shares), np.finfo(float).tiny)
-    chance = float(np.quantile(share @ np.array(law), 1 - LEVEL))
+    weight = share * np.array(bins) / (np.array(bins) + RELIABLE_BINS)
+    weight /= max(weight.sum(), np.finfo(float).tiny)
+    chance = float(np.quantile(weight @ np.array(law), 1 - LEVEL))
     bands = tuple((w, float(p), float(np.sqrt(max(s, 0.0)))) for w, p, s in zip(waves, share, squares, strict=True))
-    return float(np.sqrt(max(share @ np.array(squares), 0.0))), float(np.sqrt(max(chance, 0.0))), bands
+    return float(np.sqrt(max(weight @ np.array(squares), 0.0))), float(np.sqrt(max(chance, 0.0))), bands
 
 
 def _tukey(side: int) -> NDArray[np.float64]:
