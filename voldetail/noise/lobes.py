@@ -100,8 +100,9 @@ def lobe_noise(points: tuple[Any, Any], lobes: LobeTable, seed: Any, footprint: 
     variance that is left is the table's, sum_k v_k, everywhere.
     """
     x, y = points
-    float_type, uint_type = type(x), type(seed)
-    four = dr.replace_shape_t(float_type, (4, -1))  # four numbers in one read: sixteen reads take longer than the noise
+    float_type: Any = type(x)
+    uint_type: Any = type(seed)
+    four: Any = dr.replace_shape_t(float_type, (4, -1))  # four numbers in one read: sixteen reads take longer than the noise
     width = dr.width(x, y)
 
     def body(index: Any, value: Any, left: Any) -> tuple[Any, Any, Any]:
@@ -141,10 +142,12 @@ def passed(footprint: Any, frequency: Any, bandwidth: Any, across: Any) -> Any:
 
 def _envelope(u: Any, v: Any, lobe: Any, seed: Any) -> tuple[Any, Any]:
     """Return the real and imaginary part of E at the lattice place (u, v), each of variance 1."""
-    float_type, uint_type = type(u), type(seed)
+    float_type: Any = type(u)
+    uint_type: Any = type(seed)
     int_type = dr.int32_array_t(float_type)
     across_u, across_v = _weights(u - dr.floor(u)), _weights(v - dr.floor(v))
-    iu, iv = (dr.reinterpret_array(uint_type, int_type(dr.floor(a))) for a in (u, v))
+    iu: Any = dr.reinterpret_array(uint_type, int_type(dr.floor(u)))
+    iv: Any = dr.reinterpret_array(uint_type, int_type(dr.floor(v)))
     # Lobe and seed move the lattice to a random part of the one hashed plane of 2^64 nodes.
     shift_u, shift_v, _, _ = cell_hash(lobe, uint_type(0), uint_type(0), seed)
     # Minus one wraps round in unsigned integers, which is what the reinterpreted index needs.

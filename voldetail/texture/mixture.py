@@ -63,7 +63,7 @@ def binned(power: NDArray[np.float64], fx: NDArray[np.float64], fy: NDArray[np.f
     _, label = np.unique(key.ravel(), return_inverse=True)
 
     def summed(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.bincount(label, (weight * values).ravel())
+        return np.asarray(np.bincount(label, (weight * values).ravel()), np.float64)
 
     total = np.maximum(summed(np.ones_like(x)), TINY)
     mx, my = summed(x) / total, summed(y) / total
@@ -143,7 +143,7 @@ def _maximised(bins: Bins, plus: NDArray[np.float64], minus: NDArray[np.float64]
     outer = bins.centroid[:, :, None] * bins.centroid[:, None, :] + bins.spread
     second = np.tensordot(both.T, outer, 1) / mass[:, None, None]
     # At zero the direction is that of the power itself.
-    values, vectors = np.linalg.eigh(second)
+    vectors = np.linalg.eigh(second)[1]
     distance = np.linalg.norm(centre, axis=1)
     variance = np.maximum(np.trace(second, axis1=1, axis2=2) - distance**2, 2 * least**2) / 2
     centred = distance < CENTRED * np.sqrt(variance)
