@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import drjit as dr
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,6 +24,8 @@ RADIUS = math.sqrt(-2 * math.log(CUT))
 
 def sparse_gabor(points: tuple[Any, Any], rows: NDArray[np.float64], impulses: int, seed: Any) -> Any:
     """Return the noise of ``rows`` (n, 5), as `voldetail.noise.lobes.lobe_table` has them, at ``points`` in texels, y up."""
+    import drjit as dr  # not above: voldetail has to be imported first, to choose the LLVM that it reads
+
     x, y = points
     float_type: Any = type(x)
     uint_type: Any = type(seed)
