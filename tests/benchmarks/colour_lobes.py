@@ -177,8 +177,10 @@ def speed() -> dict[str, Any]:
     uniform = [rng.uniform(a, b, SPEED_LOBES) for a, b in ((0.02, 0.4), (0, np.pi), (0.005, 0.05), (0.005, 0.05), (0, 1))]
     rows = np.stack(uniform, 1)
     table = lobe_table(rows, mi.Float)
-    ways: dict[str, Callable[[Any], Any]] = {"lobes": lambda seed: lobe_noise(points, table, seed)[0]}
-    ways["lobes, filtered"] = lambda seed: sum(lobe_noise(points, table, seed, dr.opaque(mi.Float, 1.0)))
+    ways: dict[str, Callable[[Any], Any]] = {
+        "lobes": lambda seed: lobe_noise(points, table, seed)[0],
+        "lobes, filtered": lambda seed: lobe_noise(points, table, seed, dr.opaque(mi.Float, 0.5))[0],
+    }
     for count in IMPULSES:
         ways[f"sparse Gabor, {count} a cell"] = partial(sparse_gabor, points, rows, count)
     found: dict[str, Any] = {}
