@@ -4,7 +4,7 @@ Run with:  python -m tests.benchmarks.colour_lobes [-o results/colour] [--data .
 Each photo's luminance (encoded as sRGB, as `ColourTexture` has it) is mapped by rank to a Gaussian channel z, and every noise
 goes back through the same map. Errors are half the sum of the absolute differences of two power spectra, of unit sum, in blocks
 that grow with the frequency: 0 the same, 1 nowhere alike. A single picture's spectrum is itself a sample, so the error of
-a Gaussian field of the photo's own estimated spectrum, "resampled", is what no noise can be expected to fall below.
+a Gaussian field of the photo's own estimated spectrum, "resampled", is what can be expected of a new sample.
 """
 
 from __future__ import annotations

@@ -8,8 +8,8 @@ Symbols
 
 Plain averages of noises lose contrast where they overlap; independent ones whose weights' squares sum to one keep the variance,
 and Gaussian ones their law (Heitz and Neyret, High-performance by-example noise, 2018, for blended tiles). A surface as a whole
-has the plane's spectrum only where one plane outweighs the others; between, patterns of different directions overlap. Opposite sides
-of an object see a plane from its two sides: on one of them a slanting pattern slants the other way.
+has the plane's spectrum only where one plane outweighs the others; between, patterns of different directions overlap. Opposite
+sides of an object see a plane from its two sides: on one of them a slanting pattern slants the other way.
 """
 
 from __future__ import annotations

@@ -39,8 +39,8 @@ LEVEL = 0.05
 """Probability that an isotropic field passes the statistical part of the test."""
 
 EFFECT = 0.25
-"""A below which a spectrum counts as isotropic in any case; tuned on photos: an isotropic field stretched by 1.2 has about half
-of it, gravel in slanting light is below and wood, ripples and rock layers are far above."""
+"""A below which a spectrum counts as isotropic in any case; tuned on photos: gravel has 0.10 and grass 0.23, layered rock 0.38
+and 0.48, bark and ripples 1 and more. A field of power f^-2 has it when it is stretched by 1.5 (0.10 at 1.3, 0.46 at 2)."""
 
 RELIABLE_BINS = 24
 """Independent bins at which a band counts with half of its share: the coarsest octave has most of a steep spectrum's power and
