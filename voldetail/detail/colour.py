@@ -33,13 +33,20 @@ class ColourRecord(BaseModel):
 
 
 class Lobe(ColourRecord):
-    """One Gaussian pair in the power spectrum of an anisotropic noise: a Gabor kernel's, at plus and minus its frequency."""
+    """One Gaussian pair in the power spectrum of an anisotropic noise: a Gabor kernel's, at plus and minus its frequency.
+
+    Its ellipse lies along and across its frequency: fibres and ripples have spectra thin one way, which a few ellipses
+    follow and circles do not.
+    """
 
     frequency: float = Field(ge=0, le=0.75, description="The radial frequency of its centre, in cycles per texel.")
     angle: float = Field(
         ge=0, le=3.141593, description="The direction of the frequency, counter-clockwise from x (y up), in radians."
     )
-    bandwidth: float = Field(gt=0, le=0.5, description="The standard deviation of the Gaussian, in cycles per texel.")
+    bandwidth: float = Field(gt=0, le=0.5, description="The Gaussian's standard deviation along its frequency, cycles per texel.")
+    across: float | None = Field(
+        default=None, gt=0, le=0.5, description="The same at right angles to its frequency; left out where both are equal."
+    )
     variance: float = Field(ge=0, le=1e8, description="The variance that the lobe adds to the noise.")
 
 
