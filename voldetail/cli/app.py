@@ -12,6 +12,7 @@ from voldetail.cli.compare_command import compare
 from voldetail.cli.fit_command import fit
 from voldetail.cli.render_command import relight, render
 from voldetail.cli.show_command import schema, show
+from voldetail.cli.texture_command import texture_app
 
 MOST_THREADS = 1024
 
@@ -26,6 +27,7 @@ app = typer.Typer(
 )
 for command in (fit, render, relight, bake, compare, show, schema):
     app.command()(command)
+app.add_typer(texture_app)
 
 
 def _version(wanted: bool) -> None:

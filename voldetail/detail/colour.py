@@ -48,7 +48,8 @@ class ColourChannel(ColourRecord):
 
     weights: w_i of the wavelet bands, the finest (wavelengths of 2 to 4 texels) first, 1 to 14 of them.
     lobes: in place of the bands where the texture is anisotropic; then weights is empty.
-    curve: values of the channel at the probabilities `curve_probabilities`, not decreasing.
+    curve: values of the channel at ten probabilities (`texture.curve.CURVE_PROBABILITIES`: equal steps of the normal law's
+        quantile from -3.2 to 3.2), not decreasing.
     """
 
     weights: tuple[Weight, ...] = Field(max_length=MOST_BANDS, description="Weights of the wavelet bands, finest first.")
@@ -90,5 +91,5 @@ class ColourTexture(ColourRecord):
             for j, b in enumerate(rows):
                 product = sum(p * q for p, q in zip(a, b, strict=True))
                 if abs(product - (i == j)) > ORTHONORMAL_TOLERANCE:
-                    raise ValueError("the axes are no rotation: each has to have length 1 and be at right angles to the others")
+                    raise ValueError("the axes are no rotation: each needs length 1, at right angles to the others")
         return self
