@@ -167,6 +167,7 @@ def main() -> None:
     found = [photo for photo in PHOTOS if photo.name in ASKED and is_there(photo)]
     photos = {photo.name: [crop[:SIDE, :SIDE] for crop in crops(load(photo), photo.side)] for photo in found}
     record = {"photos": list(photos)} | {name: trustworthy(judge, photos) for name, judge in JUDGES.items()}
+    output.mkdir(parents=True, exist_ok=True)
     write_text(output / "judges.json", json.dumps(record, indent=1) + "\n")
     print(json.dumps(record, indent=1))
 
