@@ -144,11 +144,11 @@ def extras(output: Path, again: bool) -> None:
             photo = next(photo for photo in PHOTOS if photo.name == LARGER)
             sheets.save(path, sheets.larger_row(crops(load(photo), photo.side)[0], chosen[0]))
         elif name == "morph":
-            sheets.save(path, sheets.morph_row(*chosen))
+            sheets.save(path, sheets.morph_row(*chosen), exact=True)
         elif name == "edit":
-            sheets.save(path, sheets.edit_row(*chosen))
+            sheets.save(path, sheets.edit_row(*chosen), exact=True)
         else:
-            sheets.save(path, sheets.solid_row(chosen))
+            sheets.save(path, sheets.solid_row(chosen), exact=True)
 
 
 def main() -> None:

@@ -49,11 +49,15 @@ def stacked(rows: Sequence[Image.Image], columns: int = 1) -> Image.Image:
     return page
 
 
-def save(path: Path, page: Image.Image) -> None:
-    """Save a page in as many colours as keep it small."""
+def save(path: Path, page: Image.Image, *, exact: bool = False) -> None:
+    """Save a page in as many colours as keep it small; `exact`: in its own, if those do."""
     path.parent.mkdir(parents=True, exist_ok=True)
+    if exact:
+        page.save(path, optimize=True)
+        if path.stat().st_size <= SHEET_BYTES:
+            return
     for colours in (256, 128, 64, 32):
-        page.quantize(colours, dither=Image.Dither.NONE).save(path, optimize=True)
+        page.quantize(colours, kmeans=1, dither=Image.Dither.NONE).save(path, optimize=True)
         if path.stat().st_size <= SHEET_BYTES:
             return
 
