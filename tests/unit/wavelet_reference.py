@@ -12,7 +12,7 @@ import numpy as np
 from noise_reference import TURN, hash_words
 from numpy.typing import NDArray
 
-from voldetail.noise.wavelet_spectrum import PHASE
+from voldetail.noise.wavelet_spectrum import PHASE, covariance_lines
 
 Floats = NDArray[np.float64]
 
@@ -65,4 +65,27 @@ def noise(points: Floats, band: int, seed: int, tile: NDArray[np.float32]) -> Fl
             where += moves(nodes[:, axis], axis, band, seed, dims, side)
         where %= side
         total += weight[:, None] * tile[tuple(where[:, axis] for axis in reversed(range(dims)))]
+    return total
+
+
+def slice_shares(side: int = 512, step: float = 0.25, octaves: int = 6) -> Floats:
+    """Share of a 3D band's variance by octave in a slice, from one finer than its own: the mean over three planes.
+
+    The covariance along the turned lattice's planes, transformed: of `solid.SLICE_SHARE` the numbers.
+    """
+    tau = np.linspace(-60.0, 60.0, 6001)
+    lines = covariance_lines(tau)
+    d = (np.arange(side) - side // 2) * step
+    x, y = np.meshgrid(d, d)
+    frequency = np.abs(np.fft.fftfreq(side, step))
+    largest = np.maximum(frequency[:, None], frequency[None])
+    total = np.zeros(octaves)
+    for u, v in itertools.combinations(TURN.T, 2):
+        cov = np.zeros((side, side))
+        for term, sign in enumerate((1.0, -2.0, 1.0)):
+            cov += sign * np.prod([np.interp(x * u[k] + y * v[k], tau, lines[term], 0.0, 0.0) for k in range(3)], axis=0)
+        power = np.fft.fft2(np.fft.ifftshift(cov)).real
+        for row in range(octaves):
+            k = row - 1
+            total[row] += power[(largest > 2.0 ** -(k + 2)) & (largest <= 2.0 ** -(k + 1))].sum() / power.sum() / 3.0
     return total

@@ -24,6 +24,7 @@ from typing import Any
 
 import drjit as dr
 import numpy as np
+from numpy.typing import NDArray
 
 from voldetail.noise.lattice import cell_hash
 from voldetail.noise.octave import TURN
@@ -51,9 +52,7 @@ class WaveletNoise:
         self.side = side or SIDES[dims]
         self.uint_type, self.int_type = dr.uint32_array_t(float_type), dr.int32_array_t(float_type)
         self.packet = getattr(sys.modules[float_type.__module__], f"Array{CHANNELS}f")
-        self.tile = float_type(np.ascontiguousarray(wavelet_tile(dims, self.side)).ravel())
-        dr.eval(self.tile)
-        dr.make_opaque(self.tile)
+        self.tile = held(wavelet_tile(dims, self.side), float_type)
 
     def band(self, points: tuple[Any, ...], scale: Any, band: Any, seed: Any) -> Any:
         """Return N_band (CHANNELS values) at ``points`` (texels; dims coordinates).
@@ -113,6 +112,18 @@ class WaveletNoise:
             value = dr.gather(self.packet, self.tile, index)
             total = value * weight if total is None else dr.fma(value, self.packet(weight), total)
         return total
+
+
+def held(values: NDArray[np.float32], float_type: Any) -> Any:
+    """Return ``values`` as one flat Dr.Jit array in Dr.Jit's own memory.
+
+    An array that NumPy owns may lie at any address, and Dr.Jit fetches a packet of four at once only where addresses are
+    multiples of 16 bytes: another kernel would be compiled for each kind of address.
+    """
+    flat = float_type(np.ascontiguousarray(values, np.float32).ravel())
+    copy = dr.gather(float_type, flat, dr.arange(dr.uint32_array_t(float_type), dr.width(flat)))
+    dr.eval(copy)
+    return copy
 
 
 @cache

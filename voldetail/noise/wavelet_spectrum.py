@@ -36,6 +36,7 @@ REACH = 24
 _LINE = 128
 _PHASES = 16
 _QUADRATURE = 32
+_SLICE_REACH = 10.0  # coefficients within which all of a slice's covariance lies, to 1e-3
 
 
 @cache
@@ -138,6 +139,29 @@ def leak_matrix(taper_x: Floats, taper_y: Floats, count: int) -> Floats:
         cumulative[-1] = zero  # what lies below the coarsest band's lower edge counts as its own, but the mean does not
         matrix[:, band] = cumulative[:-1] - cumulative[1:]
     return matrix
+
+
+def passed_slice(side: Floats, turn: Floats) -> Floats:
+    """Return what `passed_variance` does, for squares in the planes xy, xz and yz of a 3D noise whose lattice is turned.
+
+    turn: the rotation (3, 3) to the lattice's axes. The mean over the three planes, by the midpoint rule.
+    """
+    tau = np.linspace(-_SLICE_REACH * 2.0, _SLICE_REACH * 2.0, 6001)
+    lines = covariance_lines(tau)
+    found = np.zeros(len(side))
+    for index, u in enumerate(np.asarray(side, np.float64)):
+        span = min(float(u), _SLICE_REACH)
+        count = max(8, int(np.ceil(span / 0.2)))
+        step = span / count
+        x = (np.arange(count) + 0.5) * step
+        y = (np.arange(2 * count) - count + 0.5) * step
+        weight = 2.0 * step * step * (1.0 - x[None, :] / u) * (1.0 - np.abs(y)[:, None] / u) / u**2
+        for across, up in ((0, 1), (0, 2), (1, 2)):
+            places = [x[None, :] * row[across] + y[:, None] * row[up] for row in turn]
+            for term, sign in enumerate(TERMS):
+                product = np.prod([np.interp(place, tau, lines[term]) for place in places], axis=0)
+                found[index] += GAIN * sign * float(np.sum(product * weight)) / 3.0
+    return np.asarray(np.clip(found / variance(3), 0.0, 1.0))
 
 
 def passed_variance(side: Floats) -> Floats:

@@ -29,7 +29,7 @@ import numpy as np
 
 from voldetail.detail.colour import ColourTexture
 from voldetail.errors import InputError
-from voldetail.noise.wavelet import wavelet_noise
+from voldetail.noise.wavelet import held, wavelet_noise
 from voldetail.noise.wavelet_spectrum import variance
 from voldetail.texture.clamping import LARGEST_LOG, SMALLEST_LOG, STEPS, passed_table
 from voldetail.texture.filtered import COLUMNS, FARTHEST, ROWS, filtered_curve
@@ -71,18 +71,13 @@ class Evaluator:
         self.pair, self.packet = module.Array2f, module.Array4f
         self.noise = wavelet_noise(dims, float_type)
         amplitudes = band_amplitudes(texture, dims)
-        self.amplitudes = self._held(amplitudes)
+        self.amplitudes = held(amplitudes, float_type)
         self.count = dr.opaque(self.uint_type, len(amplitudes))
         self.seed = dr.opaque(self.uint_type, texture.seed)
-        self.passed = self._held(passed_table(dims))
-        self.curves = self._held(np.stack([filtered_curve(channel.curve) for channel in texture.channels]))
+        self.passed = held(passed_table(dims), float_type)
+        self.curves = held(np.stack([filtered_curve(channel.curve) for channel in texture.channels]), float_type)
         self.axes = [[dr.opaque(float_type, texture.axes[3 * c + k]) for k in range(3)] for c in range(3)]
         self.encoded = texture.encoding == "srgb"
-
-    def _held(self, values: Any) -> Any:
-        found = self.float_type(np.ascontiguousarray(values, np.float32).ravel())
-        dr.make_opaque(found)
-        return found
 
     def colour(self, points: tuple[Any, ...], footprint: Any, first: Any = None) -> tuple[Any, Any, Any]:
         """Return the linear colour at ``points``; see `colour_at`."""
