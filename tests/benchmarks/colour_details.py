@@ -75,7 +75,9 @@ def main() -> None:
     parser.add_argument("--unshown", type=Path)
     parser.add_argument("--only", action="append", choices=[p.name for p in PHOTOGRAPHS])
     arguments = parser.parse_args()
-    records, shown, unshown = [], [], []
+    records: list[dict[str, Any]] = []
+    shown: list[list[Picture]] = []
+    unshown: list[list[Picture]] = []
     (arguments.output / "details").mkdir(parents=True, exist_ok=True)
     for photograph in PHOTOGRAPHS:
         if (arguments.only and photograph.name not in arguments.only) or not is_there(photograph):

@@ -17,7 +17,7 @@ from voldetail.errors import InputError  # noqa: E402
 from voldetail.image import to_srgb  # noqa: E402
 from voldetail.texture import analyse, band_count, edit, morph, picture  # noqa: E402
 from voldetail.texture.curve import curve_moments  # noqa: E402
-from voldetail.texture.edit import bands_named  # noqa: E402
+from voldetail.texture.edit import bands_named, faced, mean_colour  # noqa: E402
 
 A = analyse(blotches(128, 128), seed=3, name="a")
 B = analyse(blotches(64, 48, seed=2)[..., ::-1], seed=4, name="b")
@@ -73,19 +73,25 @@ def test_wrong_edits_are_refused(wrong: dict[str, Any]) -> None:
 def test_the_ends_of_a_morph() -> None:
     assert morph(A, B, 0.0) == A
     end = morph(A, B, 1.0)
-    assert end == B.model_copy(update={"seed": A.seed})
+    assert end.seed == A.seed
+    # The law of B, whose axes may face the other way.
+    assert mean_colour(end) == pytest.approx(mean_colour(B), abs=1e-6)
+    for q, made in zip(B.channels, end.channels, strict=True):
+        assert made.weights[: len(q.weights)] == pytest.approx(q.weights)
+        assert np.ptp(made.curve) == pytest.approx(np.ptp(q.curve))
     assert np.array_equal(picture(morph(A, B, 0.0), (16, 16)), picture(A, (16, 16)))
 
 
 def test_the_middle_of_a_morph() -> None:
     made = morph(A, B, 0.5)
-    turn = [Rotation.from_matrix(np.reshape(x.axes, (3, 3))) for x in (A, made, B)]
+    turn = [Rotation.from_matrix(np.reshape(x.axes, (3, 3))) for x in (A, made, faced(B, A))]
     # Half of the angle between the two, about one axis.
     angle = (turn[0].inv() * turn[2]).magnitude()
     assert (turn[0].inv() * turn[1]).magnitude() == pytest.approx(angle / 2, abs=1e-6)
     assert (turn[1].inv() * turn[2]).magnitude() == pytest.approx(angle / 2, abs=1e-6)
-    for p, m, q in zip(A.channels, made.channels, B.channels, strict=True):
-        assert m.curve == pytest.approx((np.array(p.curve) + q.curve) / 2)
+    assert mean_colour(made) == pytest.approx((mean_colour(A) + mean_colour(B)) / 2, abs=1e-6)
+    for p, m, q in zip(A.channels, made.channels, faced(B, A).channels, strict=True):
+        assert np.diff(m.curve) == pytest.approx(np.diff((np.array(p.curve) + q.curve) / 2), abs=1e-9)
         assert len(m.weights) == 7
         padded = np.pad(q.weights, (0, 7 - len(q.weights)))
         assert m.weights == pytest.approx((np.array(p.weights) + padded) / 2)
@@ -108,5 +114,36 @@ def test_what_cannot_be_morphed() -> None:
     texture = ColourTexture(channels=(lobes, lobes, lobes), texels=(8, 8))
     with pytest.raises(InputError, match="lobes"):
         morph(A, texture, 0.5)
-    with pytest.raises(InputError, match="lobes"):
-        edit(texture)
+
+
+def lobed(frequencies: tuple[float, ...], seed: int = 0) -> ColourTexture:
+    lobes = tuple(Lobe(frequency=f, angle=0.3, bandwidth=0.02, variance=1.0 / len(frequencies)) for f in frequencies)
+    curve = tuple(np.linspace(0.1, 0.9, 10).tolist())
+    moving, still = ColourChannel(weights=(), lobes=lobes, curve=curve), ColourChannel(weights=(0.0,), curve=(0.0,) * 10)
+    return ColourTexture(channels=(moving, still, still), texels=(64, 64), seed=seed)
+
+
+def test_lobes_are_edited_by_the_band_of_their_frequency() -> None:
+    made = edit(lobed((0.3, 0.2, 0.1, 0.01)), {0: 2.0, 2: 0.0}).channels[0].lobes
+    # Wavelengths of 3.3, 5, 10 and 100 texels: bands 0, 1, 2 and the last.
+    assert [lobe.variance for lobe in made] == pytest.approx([1.0, 0.25, 0.0, 0.25])
+    with pytest.raises(InputError, match="without any band"):
+        edit(lobed((0.3,)), {0: 0.0})
+
+
+def test_lobes_are_morphed_by_their_variances() -> None:
+    made = morph(lobed((0.3,)), lobed((0.1,)), 0.25).channels[0].lobes
+    assert [(lobe.frequency, lobe.variance) for lobe in made] == [(0.3, 0.75), (0.1, 0.25)]
+    assert morph(lobed((0.3,)), lobed((0.1,)), 1.0).channels[1].weights == (0.0,)
+
+
+def test_axes_face_the_nearer_way() -> None:
+    turned = A.model_copy(update={
+        "axes": tuple(v * s for v, s in zip(A.axes, (-1,) * 6 + (1,) * 3, strict=True)),
+        "channels": tuple(
+            c.model_copy(update={"curve": tuple(-v for v in reversed(c.curve))}) if i < 2 else c for i, c in enumerate(A.channels)
+        ),
+    })  # fmt: skip
+    assert np.allclose(faced(turned, A).axes, A.axes)
+    assert mean_colour(turned) == pytest.approx(mean_colour(A), abs=1e-6)
+    assert morph(A, turned, 0.5).axes == pytest.approx(A.axes)

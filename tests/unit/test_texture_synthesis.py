@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 import wavelet_reference as reference
-from scipy.special import ndtr, ndtri
+from scipy.special import ndtri
 from texture_examples import blotches, grey_noise
 
 from voldetail.backend import mitsuba
@@ -21,7 +21,7 @@ from voldetail.noise.wavelet_spectrum import leak_matrix, variance  # noqa: E402
 from voldetail.noise.wavelet_tile import wavelet_tile  # noqa: E402
 from voldetail.texture import analyse, colour_at, picture  # noqa: E402
 from voldetail.texture.clamping import LARGEST_LOG, SMALLEST_LOG, STEPS, passed_table  # noqa: E402
-from voldetail.texture.curve import curve_at, curve_moments  # noqa: E402
+from voldetail.texture.curve import curve_at, curve_moments, gaussian_curve  # noqa: E402
 from voldetail.texture.filtered import COLUMNS, FARTHEST, ROWS, filtered_curve  # noqa: E402
 from voldetail.texture.picture import texels_footprint  # noqa: E402
 from voldetail.texture.power import band_powers, taper_line  # noqa: E402
@@ -214,9 +214,51 @@ def test_impossible_pictures_are_refused(size: tuple[int, int], zoom: float) -> 
         picture(EXAMPLE, size, zoom=zoom)
 
 
-def test_lobes_are_refused() -> None:
-    lobes = ColourChannel(weights=(), lobes=(Lobe(frequency=0.1, angle=0.0, bandwidth=0.02, variance=1.0),), curve=(0.0,) * 10)
-    texture = ColourTexture(channels=(lobes, lobes, lobes), texels=(8, 8))
-    with pytest.raises(InputError, match="lobes"):
-        colours(texture, np.zeros((1, 2)))
-    assert ndtr(0.0) == 0.5
+GAUSSIAN = tuple(gaussian_curve(0.5, 0.1).tolist())
+
+
+def test_channels_of_lobes_have_their_curves_and_their_direction() -> None:
+    lobes = ColourChannel(
+        weights=(), lobes=(Lobe(frequency=0.1, angle=0.0, bandwidth=0.01, variance=3.0),), curve=GAUSSIAN
+    )
+    still = ColourChannel(weights=(0.0,), curve=(0.0,) * 10)
+    texture = ColourTexture(channels=(lobes, still, still), texels=(64, 64), encoding="linear")
+    made = picture(texture, (512, 512))[..., 0].astype(np.float64)
+    assert made.mean() == pytest.approx(0.5, abs=0.02)
+    assert made.std() == pytest.approx(0.1, rel=0.06)
+    along, across = np.diff(made, axis=1).std(), np.diff(made, axis=0).std()
+    assert along > 5.0 * across
+    # What is finer than a pixel is averaged, as a pixel's mean would be.
+    small = picture(texture, (128, 128), zoom=1 / 32)[..., 0]
+    assert small.std() < 0.005
+    assert small.mean() == pytest.approx(0.5, abs=0.01)
+
+
+def test_a_solid_of_lobes_is_laid_on_from_three_sides() -> None:
+    lobes = ColourChannel(
+        weights=(), lobes=(Lobe(frequency=0.1, angle=0.0, bandwidth=0.05, variance=1.0),), curve=GAUSSIAN
+    )
+    still = ColourChannel(weights=(0.0,), curve=(0.0,) * 10)
+    texture = ColourTexture(channels=(lobes, still, still), texels=(64, 64), encoding="linear")
+    random = np.random.default_rng(4)
+    points = tuple(mi.Float(random.uniform(0, 3000, 40_000)) for _ in range(3))
+    normals = tuple(mi.Float(v) for v in random.standard_normal((3, 40_000)))
+    (value, _, _) = colour_at(texture, points, normals=normals)
+    assert np.asarray(value).std() == pytest.approx(0.1, rel=0.03)
+    (flat, _, _) = colour_at(texture, (*points[:2], mi.Float(0.0)), normals=(mi.Float(0.0), mi.Float(0.0), mi.Float(1.0)))
+    assert np.asarray(flat).std() == pytest.approx(0.1, rel=0.03)
+
+
+def test_a_driven_channel_takes_the_share_that_it_is_given() -> None:
+    shares = np.array([1e-6, 0.01, 0.25, 0.5, 0.75, 0.99, 1.0])
+    still = ColourChannel(weights=(0.0,), curve=(0.0,) * 10)
+    moving = ColourChannel(weights=(1.0, 1.0), curve=GAUSSIAN)
+    texture = ColourTexture(channels=(moving, still, still), texels=(64, 64), encoding="linear")
+    points = (mi.Float(np.arange(7.0)), mi.Float(np.arange(7.0)))
+    (value, _, _) = colour_at(texture, points, 4.0, first=mi.Float(shares))
+    found = np.asarray(value)
+    assert found[3] == pytest.approx(0.5, abs=0.002)
+    # Phi^-1(0.75) = 0.67449, Phi^-1(0.99) = 2.3263 (tables).
+    assert found[4] == pytest.approx(0.567449, abs=0.002)
+    assert found[5] == pytest.approx(0.73263, abs=0.006)
+    assert (np.diff(found) >= 0).all()

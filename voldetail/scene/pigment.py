@@ -48,6 +48,7 @@ def coloured(
     texels = dr.opaque(float_type, colour.texels_per_unit / scale)
     found = colour_at(
         colour.texture, tuple(v * texels for v in points), footprint=colour.texels_per_unit / scale * spacing, first=first,
+        normals=normals,
     )
     out = []
     for value, gain, tint in zip(found, colour.gain, detail.reflectance.tint, strict=True):

@@ -17,6 +17,8 @@ from voldetail.errors import InputError
 from voldetail.image import to_srgb
 from voldetail.texture.curve import PLACES, fitted_curve, gaussian_curve
 from voldetail.texture.gaussian import gaussianise
+from voldetail.texture.isotropy import isotropy_of
+from voldetail.texture.lobes import lobes_of
 from voldetail.texture.power import band_powers, weights_of
 
 Floats = NDArray[np.float64]
@@ -25,6 +27,9 @@ SMALLEST_SIDE = 8
 """Pixels: three octaves of wavelengths, the fewest that tell a slope of the spectrum."""
 
 FEWEST_PIXELS = 64
+
+LEAST_DIRECTED = 64
+"""Pixels a side below which directions are not looked for: an octave has hardly a bin a sector."""
 
 CONSTANT = 1e-4
 """Deviation under which a channel is constant: a fortieth of a step of an 8-bit file, far over single precision's rounding."""
@@ -39,15 +44,17 @@ def analyse(
     photo_name: str = "",
     match_histogram: bool = True,
     encoding: str = "srgb",
+    directed: bool | None = None,
 ) -> ColourTexture:
     """Return the procedural texture of ``photo`` (H, W, 3), linear light; what is outside 0 to 1 is clipped.
 
     mask: (H, W), True where the photo is to be used; all of it by default. The spectrum is that of the photo with its mean
     outside the mask, divided by the share that is inside. match_histogram: False gives every channel a Gaussian histogram of
     its mean and deviation. encoding: "srgb" (default) or "linear", what the channels are sums of; in sRGB most photographs
-    are closer to Gaussian. seed: of the noise. A grey photo (H, W) or (H, W, 3) has one channel that varies, a constant one
-    none: the texture of a flat colour. Raises InputError for another shape, under 8 pixels a side, NaN, infinities, and a
-    mask of another size or of under 64 pixels.
+    are closer to Gaussian. seed: of the noise. directed: whether channels are made of lobes, which know directions, and not of
+    bands; by default where the test of texture.isotropy finds that the channel's spectrum has directions. A grey photo (H, W)
+    or (H, W, 3) has one channel that varies, a constant one none: the texture of a flat colour. Raises InputError for another
+    shape, under 8 pixels a side, NaN, infinities, and a mask of another size or of under 64 pixels.
     """
     pixels, used = _checked(photo, mask)
     if encoding not in ("srgb", "linear"):
@@ -58,7 +65,7 @@ def analyse(
     inside = encoded.reshape(-1, 3) if used is None else encoded[used]
     axes = principal_axes(inside)
     values = inside @ axes.T.astype(np.float32)
-    channels = [_channel(values[:, c], used, (rows, columns), match_histogram) for c in range(3)]
+    channels = [_channel(values[:, c], used, (rows, columns), match_histogram, directed) for c in range(3)]
     return ColourTexture(
         name=name, seed=seed, encoding="srgb" if encoding == "srgb" else "linear", axes=tuple(axes.ravel().tolist()),
         channels=(channels[0], channels[1], channels[2]), texels=(columns, rows), photo=photo_name,
@@ -97,7 +104,8 @@ def _facing(vector: Floats) -> Floats:
 
 
 def _channel(
-    values: NDArray[np.float32], used: NDArray[np.bool_] | None, shape: tuple[int, int], match_histogram: bool
+    values: NDArray[np.float32], used: NDArray[np.bool_] | None, shape: tuple[int, int], match_histogram: bool,
+    directed: bool | None,
 ) -> ColourChannel:
     mean, deviation = float(values.mean(dtype=np.float64)), float(values.std(dtype=np.float64))
     if deviation < CONSTANT:
@@ -113,12 +121,20 @@ def _channel(
     else:
         picture = np.zeros(shape, np.float32)
         picture[used] = z
+    curve = np.maximum.accumulate(curve)
+    if directed or (directed is None and _has_direction(picture, used)):
+        return ColourChannel(weights=(), lobes=lobes_of(picture.astype(np.float64), used), curve=tuple(curve.tolist()))
     weights = weights_of(band_powers(picture, used), shape)
     if not weights.any():
         # All of the variance is slower than the photo is long, by the solution's reckoning: the slowest band has it.
         weights[-1] = 1.0
-    curve = np.maximum.accumulate(curve)
     return ColourChannel(weights=tuple(weights.tolist()), curve=tuple(curve.tolist()))
+
+
+def _has_direction(picture: NDArray[np.float32], used: NDArray[np.bool_] | None) -> bool:
+    if min(picture.shape) < LEAST_DIRECTED:
+        return False
+    return not isotropy_of(picture.astype(np.float64), used).isotropic
 
 
 def _checked(

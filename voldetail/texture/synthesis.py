@@ -28,11 +28,13 @@ import drjit as dr
 import numpy as np
 
 from voldetail.detail.colour import ColourTexture
-from voldetail.errors import InputError
+from voldetail.noise.lobes import LobeTable, lobe_noise, lobe_table
+from voldetail.noise.triplanar import triplanar
 from voldetail.noise.wavelet import held, wavelet_noise
 from voldetail.noise.wavelet_spectrum import variance
 from voldetail.texture.clamping import LARGEST_LOG, SMALLEST_LOG, STEPS, passed_table
 from voldetail.texture.filtered import COLUMNS, FARTHEST, ROWS, filtered_curve
+from voldetail.texture.lobes import lobe_rows
 from voldetail.texture.solid import slice_weights
 
 # IEC 61966-2-1, as in voldetail.image.srgb; here on Dr.Jit arrays and with the second derivative.
@@ -41,24 +43,30 @@ _SLOPE = 12.92
 _OFFSET = 0.055
 _GAMMA = 2.4
 
+CHANNEL_SALT = 0x7FEB352D
+"""Step of the seed from channel to channel of lobes; odd, else arbitrary."""
+
+BOX_DEVIATION = 1.0 / math.sqrt(12.0)
+"""Of a square pixel of side 1, each way."""
+
 LEAST_SHARE = 1e-4
 """Beyond the curve's own first sample, and far enough from 0 for the normal quantile."""
 
 
 def colour_at(
     texture: ColourTexture, points: tuple[Any, ...], footprint: Any = 0.0, *, first: Any = None,
+    normals: tuple[Any, ...] | None = None,
 ) -> tuple[Any, Any, Any]:
     """Return the linear colour, three Dr.Jit floats in 0 to 1, at ``points`` in texels of the analysed photo.
 
     points: 2 coordinates, or 3 for the solid texture, of which every plane has the 2D texture's histogram and, where a solid
     can, its spectrum. footprint: the side of a pixel in texels, a number or an array; 0 (default) is the value at a point.
     The photo's own pixels are values at points here: for one pixel a texel give 0. first: in place of the first channel's noise,
-    the share of its values that lie below, in (0, 1), an array; it is not clamped. Raises InputError for a texture of lobes.
+    the share of its values that lie below, in (0, 1), an array; it is not clamped. normals: of the surface at 3 coordinates,
+    where channels of lobes, which have no solid form, are laid on it from three sides; without them they are seen along z.
     """
-    if any(channel.lobes for channel in texture.channels):
-        raise InputError(f"The texture {texture.name} is made of lobes and not of wavelet bands; it is evaluated elsewhere.")
     float_type: Any = type(points[0])
-    return evaluator(texture, len(points), float_type).colour(points, footprint, first)
+    return evaluator(texture, len(points), float_type).colour(points, footprint, first, normals)
 
 
 class Evaluator:
@@ -72,19 +80,23 @@ class Evaluator:
         self.noise = wavelet_noise(dims, float_type)
         amplitudes = band_amplitudes(texture, dims)
         self.amplitudes = held(amplitudes, float_type)
-        self.count = dr.opaque(self.uint_type, len(amplitudes))
+        self.count = dr.opaque(self.uint_type, band_total(texture))
         self.seed = dr.opaque(self.uint_type, texture.seed)
         self.passed = held(passed_table(dims), float_type)
         self.curves = held(np.stack([filtered_curve(channel.curve) for channel in texture.channels]), float_type)
         self.axes = [[dr.opaque(float_type, texture.axes[3 * c + k]) for k in range(3)] for c in range(3)]
         self.encoded = texture.encoding == "srgb"
+        self.lobes = [lobe_table(lobe_rows(c.lobes), float_type) if c.lobes else None for c in texture.channels]
 
-    def colour(self, points: tuple[Any, ...], footprint: Any, first: Any = None) -> tuple[Any, Any, Any]:
+    def colour(self, points: tuple[Any, ...], footprint: Any, first: Any = None, normals: Any = None) -> tuple[Any, Any, Any]:
         """Return the linear colour at ``points``; see `colour_at`."""
         clamped = not (isinstance(footprint, (int, float)) and footprint == 0)
         if isinstance(footprint, (int, float)):
             footprint = dr.opaque(self.float_type, float(footprint))
         noise, removed = self._channels(points, footprint if clamped else None)
+        for c, table in enumerate(self.lobes):
+            if table is not None:
+                noise[c], removed[c] = self._lobed(points, table, c, footprint if clamped else None, normals)
         if first is not None:
             # The normal score of a share: the curve takes those.
             score = math.sqrt(2.0) * dr.erfinv(2.0 * dr.clip(first, LEAST_SHARE, 1.0 - LEAST_SHARE) - 1.0)
@@ -123,6 +135,16 @@ class Evaluator:
         )
         return total, removed
 
+    def _lobed(self, points: tuple[Any, ...], table: LobeTable, channel: int, footprint: Any, normals: Any) -> tuple[Any, Any]:
+        """Return z and r of a channel of lobes."""
+        seed = self.seed + dr.opaque(self.uint_type, (channel + 1) * CHANNEL_SALT & 0xFFFFFFFF)
+        sigma = None if footprint is None else footprint * BOX_DEVIATION
+        if self.dims == 3 and normals is not None:
+            value, left = triplanar(points, normals, table, seed, sigma)
+        else:
+            value, left = lobe_noise((points[0], points[1]), table, seed, sigma)
+        return value / dr.sqrt(table.variance), 1.0 - left / table.variance
+
     def _passed(self, side: Any) -> Any:
         place = (dr.log2(dr.maximum(side, 1e-9)) - SMALLEST_LOG) * ((STEPS - 1) / (LARGEST_LOG - SMALLEST_LOG))
         place = dr.clip(place, 0.0, STEPS - 1.0)
@@ -157,10 +179,14 @@ def evaluator(texture: ColourTexture, dims: int, float_type: Any) -> Evaluator:
     return Evaluator(texture, dims, float_type)
 
 
+def band_total(texture: ColourTexture) -> int:
+    """Return how many wavelet bands have to be evaluated: none where all channels are of lobes."""
+    return max(len(channel.weights) for channel in texture.channels)
+
+
 def band_amplitudes(texture: ColourTexture, dims: int) -> Any:
     """Return w_ci / s_c (bands, 4) in 2 or 3 dimensions: the noise that they weigh has unit variance; the fourth is 0."""
-    count = max(len(channel.weights) for channel in texture.channels)
-    found = np.zeros((count, 4), np.float64)
+    found = np.zeros((max(band_total(texture), 1), 4), np.float64)
     for c, channel in enumerate(texture.channels):
         weights = np.asarray(slice_weights(channel.weights) if dims == 3 else channel.weights)
         deviation = float(np.sqrt(variance(dims) * np.sum(weights**2)))
