@@ -90,7 +90,7 @@ def main() -> None:
     for folder, rows in ((arguments.output, shown), (arguments.unshown, unshown)):
         if folder is not None and rows:
             folder.mkdir(parents=True, exist_ok=True)
-            save_sheet(folder / "details.png", rows)
+            save_sheet(folder / "details.jpg", rows)
     if not arguments.only:
         write_text(arguments.output / "details.json", json.dumps(records, indent=1) + "\n")
         write_text(arguments.output / "details.md", table(records))

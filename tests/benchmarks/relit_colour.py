@@ -93,7 +93,7 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
             lights[shot.name][way] = compared(picture, there)
             rows[shot.name].append(picture)
     if sheets is not None:
-        save_sheet(sheets / f"relit_{capture.name}.png", list(rows.values())[:3])
+        save_sheet(sheets / f"relit_{capture.name}.jpg", list(rows.values())[:3])
     return {
         "capture": capture.name, "credit": capture.credit, "trained": first.name, "chosen": {w: c for w, (_, c) in ways.items()},
         "medians": {
