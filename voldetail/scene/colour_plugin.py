@@ -50,7 +50,7 @@ def _plugin(mi: Any) -> type:
 
         def __init__(self, props: Any) -> None:
             super().__init__(props)
-            if props.has_property("text"):
+            if "text" in props:
                 self.texture = texture_from_text(props["text"], "The texture")
             else:
                 self.texture = load_texture(props["filename"])
