@@ -10,12 +10,15 @@ import typer
 from voldetail.cli.arguments import numbers, size, whole_numbers
 from voldetail.cli.console import output, remarks
 from voldetail.cli.outputs import check_file, check_folder, make_folder, remove
+from voldetail.cli.photo_argument import photo_path
+from voldetail.cli.shape_options import MESH_HELP, shape_of
 from voldetail.cli.threads import use_threads
 from voldetail.detail.refusal import shown
 from voldetail.detail.texture_file import load_texture, save_texture
 from voldetail.errors import InputError
 
 MOST_STEPS = 200
+NUMBERS_A_LOBE = 5
 LARGEST_SEED = 2**32 - 1
 
 _Texture = Annotated[Path, typer.Argument(metavar="TEXTURE", help="A texture file, as texture fit makes it.")]
@@ -30,7 +33,7 @@ texture_app = typer.Typer(
 
 @texture_app.command()
 def fit(
-    photo: Annotated[Path, typer.Argument(metavar="PHOTO", help="The photo of a texture.")],
+    photo: Annotated[str, typer.Argument(metavar="PHOTO", help="The photo of a texture, or skimage:gravel, :grass, :brick.")],
     out: Annotated[Path, typer.Option("--output", "-o", help="The texture file, .json.")],
     mask: Annotated[Path | None, typer.Option(help="A picture of the photo's size; white is used.")] = None,
     zone: Annotated[str | None, typer.Option(help="X,Y,WIDTH,HEIGHT in pixels: the part to use. Default: all.")] = None,
@@ -38,6 +41,12 @@ def fit(
         bool, typer.Option("--histogram/--no-histogram", help="Match the photo's histogram, or take a Gaussian one.")
     ] = True,
     encoding: Annotated[str, typer.Option(help="srgb or linear: what the channels are sums of.")] = "srgb",
+    directed: Annotated[
+        bool | None,
+        typer.Option(
+            "--directed/--isotropic", help="Whether the noise has directions. Default: where the photo's spectrum has them."
+        ),
+    ] = None,
     seed: _Seed = None,
 ) -> None:
     """Analyse a photo: about seventy numbers that make the texture."""
@@ -45,7 +54,8 @@ def fit(
     from voldetail.texture import analyse
 
     check_file(out)
-    loaded = load_photo(photo)
+    path = photo_path(photo)
+    loaded = load_photo(path)
     pixels, used = loaded.pixels, loaded.opaque
     if mask is not None:
         white = load_mask(mask, (pixels.shape[0], pixels.shape[1]))
@@ -55,12 +65,13 @@ def fit(
         pixels = pixels[y : y + height, x : x + width]
         used = None if used is None else used[y : y + height, x : x + width]
     made = analyse(
-        pixels, used, seed=seed or 0, name=photo.stem[:200] or "texture", photo_name=photo.name[:400],
-        match_histogram=histogram, encoding=encoding,
+        pixels, used, seed=seed or 0, name=path.stem[:200] or "texture", photo_name=path.name[:400],
+        match_histogram=histogram, encoding=encoding, directed=directed,
     )  # fmt: skip
     save_texture(out, made)
-    count = sum(len(c.weights) + len(c.curve) for c in made.channels) + len(made.axes)
-    _say(f"{out}  {count} numbers from {pixels.shape[1]} x {pixels.shape[0]} pixels")
+    count = sum(len(c.weights) + NUMBERS_A_LOBE * len(c.lobes) + len(c.curve) for c in made.channels) + len(made.axes)
+    words = ", with directions" if any(c.lobes for c in made.channels) else ""
+    _say(f"{out}  {count} numbers from {pixels.shape[1]} x {pixels.shape[0]} pixels{words}")
 
 
 @texture_app.command()
@@ -72,8 +83,15 @@ def render(
     offset: Annotated[str, typer.Option(help="X,Y in texels, right and up.")] = "0,0",
     zoom: Annotated[float, typer.Option(min=1e-3, max=1e3, help="Pixels a texel of the photo.")] = 1.0,
     solid: _Solid = False,
+    shape: Annotated[str | None, typer.Option("--on", metavar="MESH", help="Show it on a shape: " + MESH_HELP)] = None,
+    texels: Annotated[
+        float | None,
+        typer.Option(min=1e-2, max=1e4, help="Texels a scene unit, with --on; a shape is 2 long. Default: the photo spans it."),
+    ] = None,
 ) -> None:
-    """Make a picture of a texture, of any size."""
+    """Make a picture of a texture, of any size, or of a shape that is coloured by it."""
+    from voldetail.apply import painted
+    from voldetail.apply import render as picture_of
     from voldetail.image import check_suffix, save_image
     from voldetail.texture import picture
 
@@ -84,9 +102,16 @@ def render(
     x, y = numbers(offset, 2, "--offset", "X,Y in texels")
     if max(abs(x), abs(y)) > 1e6:
         raise InputError(f"--offset {shown(offset)} is too far; allowed: -1000000 to 1000000 texels.")
+    if shape is None and texels is not None:
+        raise InputError("--texels is for a shape; give --on as well, or --zoom instead.")
+    shape = None if shape is None else shape_of(shape)
     use_threads(context.obj)
     with remarks().status("making the picture"):
-        save_image(out, picture(record, (columns, rows), (x, y), zoom, solid))
+        if shape is None:
+            made = picture(record, (columns, rows), (x, y), zoom, solid)
+        else:
+            made = picture_of(painted(record, texels), shape, size=(columns, rows))
+        save_image(out, made)
     _say(f"{out}  {columns} x {rows} pixels")
 
 
