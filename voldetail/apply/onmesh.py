@@ -16,11 +16,11 @@ from voldetail.render import components, traced_picture
 from voldetail.scene.environment import environment_emitter
 from voldetail.scene.lamp import Lamp, lamp_of
 from voldetail.scene.lights_text import direction_of
-from voldetail.scene.phong import Diffuse, phong_dict, principled_equivalent
+from voldetail.scene.phong import Diffuse, phong_dict, principled_equivalent, vertex_diffuse
 from voldetail.scene.pigment import patterned
 from voldetail.scene.proxy import make_proxy
 from voldetail.scene.setup import CameraSetup, Light, ProxySetup
-from voldetail.scene.surface import VERTEX_ALBEDO, MeshSurface, TracedMesh
+from voldetail.scene.surface import MeshSurface, TracedMesh
 from voldetail.scene.traced import emitters_of
 from voldetail.scene.view import View, whole_view
 from voldetail.scene.volume import Volume
@@ -169,7 +169,7 @@ def _bsdf(detail: Detail, shading: Shading) -> dict[str, Any]:
     r = detail.reflectance
     diffuse: Diffuse = [min(r.diffuse * c, 1.0) for c in r.tint]
     if patterned(detail):
-        diffuse = {"type": "mesh_attribute", "name": VERTEX_ALBEDO}
+        diffuse = vertex_diffuse()
     if shading == "principled":
         return principled_equivalent(diffuse, r.specular, r.shininess)
     return phong_dict(diffuse, r.specular, r.shininess)

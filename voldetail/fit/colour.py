@@ -20,6 +20,7 @@ from voldetail.fit.objective import Objective
 from voldetail.image import to_linear, to_srgb
 from voldetail.metric import Descriptor, describe, distance
 from voldetail.render import components
+from voldetail.scene.relief import relief_quantiles
 from voldetail.scene.volume import Volume
 from voldetail.texture import CURVE_PROBABILITIES, analyse, picture
 
@@ -36,8 +37,6 @@ GREY = 0.03
 
 MEAN_SIDE = 256
 """Texels a side of the texture whose mean is divided by."""
-
-HEIGHTS_SIDE = 64
 
 
 @dataclass(frozen=True)
@@ -131,26 +130,11 @@ def _driven(
     gain = tuple(float(1.0 / max(v, 1e-4)) for v in mean)
     heights: tuple[float, ...] = ()
     if driver in ("height", "hollow"):
-        heights = relief_quantiles(detail, objective.surface.view.pixel * max(target.mask.shape))
+        heights = relief_quantiles(detail, objective.surface.view.pixel * max(target.mask.shape), tuple(CURVE_PROBABILITIES.tolist()))
     colour = DetailColour(
         driver=driver, texels_per_unit=1.0 / objective.surface.view.pixel, gain=gain, heights=heights, texture=texture,  # type: ignore[arg-type]
     )
     return detail.model_copy(update={"colour": colour})
-
-
-def relief_quantiles(detail: Detail, side: float) -> tuple[float, ...]:
-    """Return the heights R of ``detail`` at the curve's probabilities, over a square of ``side`` scene units."""
-    import drjit as dr
-
-    from voldetail.backend import mitsuba
-    from voldetail.scene.relief import relief_at
-
-    axis = (np.arange(HEIGHTS_SIDE, dtype=np.float32) + 0.5) / HEIGHTS_SIDE * side
-    x, y = np.meshgrid(axis, axis)
-    float_type = mitsuba().Float
-    points = float_type(x.ravel()), float_type(y.ravel()), dr.zeros(float_type, x.size)
-    relief = np.asarray(relief_at(detail, points))
-    return tuple(float(v) for v in np.quantile(relief, CURVE_PROBABILITIES))
 
 
 def _colours(objective: Objective, detail: Detail) -> NDArray[np.float32]:

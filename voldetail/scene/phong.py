@@ -24,6 +24,8 @@ import drjit as dr
 from voldetail.backend import mitsuba
 
 PLUGIN = "voldetail_phong"
+VERTEX_ALBEDO = "vertex_albedo"
+"""Attribute of a mesh that holds its vertices' albedo."""
 
 DIELECTRIC_SPECULAR = 0.08
 """Normal reflectance of Mitsuba's and Disney's `principled` at specular = 1 (Burley, 2012)."""
@@ -42,6 +44,11 @@ def register() -> str:
 
 Diffuse = Sequence[float] | dict[str, Any]
 """A colour, or the Mitsuba dictionary of a texture."""
+
+
+def vertex_diffuse() -> dict[str, Any]:
+    """Return the Mitsuba dictionary of an albedo that a mesh's vertices carry."""
+    return {"type": "mesh_attribute", "name": VERTEX_ALBEDO}
 
 
 def _texture(diffuse: Diffuse) -> dict[str, Any]:

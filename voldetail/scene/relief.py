@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import drjit as dr
+import numpy as np
 
+from voldetail.backend import mitsuba
 from voldetail.detail import Detail
 from voldetail.noise import GrainShape, NoiseSettings, PlateShape, cell_value, number_of, relief_function, specks
 from voldetail.scene.pigment import coloured
 
 SOLID = "solid"
+QUANTILE_POINTS = 64
+"""A side of the square over which heights are counted."""
 
 
 def settings_of(detail: Detail) -> NoiseSettings:
@@ -29,6 +34,15 @@ def relief_at(detail: Detail, domain: tuple[Any, ...], scale: float = 1.0) -> An
     ``scale`` makes the detail's cells that many times larger. The value depends on the detail and the seed alone.
     """
     return _relief(detail, domain, scale)[0]
+
+
+def relief_quantiles(detail: Detail, side: float, shares: Sequence[float]) -> tuple[float, ...]:
+    """Return the heights R below which the ``shares`` of a square of ``side`` scene units lie, of the plane z = 0."""
+    float_type = mitsuba().Float
+    axis = (np.arange(QUANTILE_POINTS, dtype=np.float32) + 0.5) / QUANTILE_POINTS * side
+    x, y = np.meshgrid(axis, axis)
+    points = float_type(x.ravel()), float_type(y.ravel()), dr.zeros(float_type, x.size)
+    return tuple(float(v) for v in np.quantile(np.asarray(relief_at(detail, points)), shares))
 
 
 def relief_and_albedo(

@@ -13,6 +13,7 @@ from voldetail.backend import mitsuba
 from voldetail.detail import Detail
 from voldetail.scene.hypertexture import Hypertexture
 from voldetail.scene.isosurface import Isosurface
+from voldetail.scene.phong import VERTEX_ALBEDO
 from voldetail.scene.pigment import diffuse_of, factor_of, factors_of
 from voldetail.scene.proxy import Proxy
 from voldetail.scene.rays import rays_of
@@ -24,8 +25,6 @@ SKY_RAYS = 32
 
 GOLDEN_ANGLE = math.pi * (3.0 - math.sqrt(5.0))
 SHAPE = "detail"
-VERTEX_ALBEDO = "vertex_albedo"
-"""Attribute of the mesh that holds the vertices' albedo, for a BSDF to take it from."""
 
 
 class TracedMesh:
