@@ -59,6 +59,7 @@ def run(photo: ColourPhoto, output: Path, unshown: Path | None) -> dict[str, Any
     return {
         "name": photo.name, "kind": photo.kind, "about": photo.about, "licence": photo.licence, "shown": photo.shown,
         "side": photo.side, "crops": len(others) + 1, "numbers": numbers(texture),
+        "directed": any(c.lobes for c in texture.channels),
         "seconds": {"analysis": round(analysed - started, 2), "picture": round(drawn - analysed, 2),
                     "heeger_bergen": round(ended - drawn, 2)},
         **judged(example, others, {"ours": ours, "heeger_bergen": rival}),
@@ -88,8 +89,8 @@ def in_8_bits(shown: Picture) -> Picture:
 
 
 def numbers(texture: ColourTexture) -> int:
-    """Return how many numbers the texture is: weights, samples of the curves and the rotation's nine."""
-    return sum(len(c.weights) + len(c.curve) for c in texture.channels) + len(texture.axes)
+    """Return how many numbers the texture is: weights, five a lobe, samples of the curves and the rotation's nine."""
+    return sum(len(c.weights) + 5 * len(c.lobes) + len(c.curve) for c in texture.channels) + len(texture.axes)
 
 
 def table(records: Sequence[dict[str, Any]]) -> str:
@@ -144,7 +145,10 @@ def extras(output: Path, again: bool) -> None:
             photo = next(photo for photo in PHOTOS if photo.name == LARGER)
             sheets.save(path, sheets.larger_row(crops(load(photo), photo.side)[0], chosen[0]))
         elif name == "morph":
-            sheets.save(path, sheets.morph_row(*chosen), exact=True)
+            # Both of bands: lobes and bands cannot be mixed.
+            found = [next(photo for photo in PHOTOS if photo.name == one) for one in wanted]
+            plain = [analyse(crops(load(p), p.side)[0], name=p.name, directed=False) for p in found]
+            sheets.save(path, sheets.morph_row(*plain), exact=True)
         elif name == "edit":
             sheets.save(path, sheets.edit_row(*chosen), exact=True)
         else:

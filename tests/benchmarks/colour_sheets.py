@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from voldetail.apply import painted, render
 from voldetail.detail.colour import ColourTexture
 from voldetail.image import to_srgb
-from voldetail.texture import colour_at, edit, morph, picture
-from voldetail.texture.picture import default_float
+from voldetail.texture import edit, morph, picture
 
 Picture = NDArray[np.float32]
 Captioned = tuple[str, Picture]
@@ -23,8 +23,6 @@ GAP, LINE = 6, 18
 SHEET_BYTES = 600_000
 STEPS = 6
 STEP_SIDE = 192
-AMBIENT = 0.25
-"""Share of light from everywhere on a carved sphere; the rest comes from the upper left."""
 
 
 def row(tiles: Sequence[Captioned]) -> Image.Image:
@@ -94,8 +92,8 @@ def edit_row(texture: ColourTexture) -> Image.Image:
     """Return a texture as it is, with louder fine bands, louder coarse ones, less contrast and more."""
     made: Mapping[str, ColourTexture] = {
         "as analysed": texture,
-        "fine bands times four": edit(texture, {"fine": 4.0}),
-        "coarse bands times four": edit(texture, {"coarse": 4.0}),
+        "fine bands twice": edit(texture, {"fine": 2.0}),
+        "coarse bands twice": edit(texture, {"coarse": 2.0}),
         "half the contrast": edit(texture, contrast=0.5),
         "half as much contrast again": edit(texture, contrast=1.5),
     }
@@ -107,21 +105,6 @@ def solid_row(textures: Sequence[ColourTexture], side: int = 256) -> Image.Image
     return row([(f"{texture.name.replace('_', ' ')}, solid", carved_sphere(texture, side)) for texture in textures])
 
 
-def carved_sphere(texture: ColourTexture, side: int, texels: float | None = None) -> Picture:
-    """Return the picture (side, side, 3), linear, of a matt sphere carved from the solid texture, on white.
-
-    The sphere's points are put into the solid: x right, y up, z towards the viewer, `texels` across (None: a texel is a
-    pixel). There is neither renderer nor shadow here: colour(x) (ambient + (1 - ambient) max(0, n . l)), n = x / |x|.
-    """
-    x = (np.arange(side) + 0.5) / side * 2 - 1
-    right, up = np.meshgrid(x, -x)
-    inside = right**2 + up**2 < 1
-    toward = np.sqrt(np.maximum(1 - right**2 - up**2, 0))
-    radius = (texels or side) / 2
-    float_type = default_float()
-    colour = colour_at(texture, tuple(float_type((c[inside] * radius).astype(np.float32)) for c in (right, up, toward)))
-    light = np.array([-1.0, 1.2, 1.5]) / np.linalg.norm([-1.0, 1.2, 1.5])
-    facing = np.maximum(right * light[0] + up * light[1] + toward * light[2], 0)[inside]
-    shown = np.ones((side, side, 3), np.float32)
-    shown[inside] = np.stack([c.numpy() for c in colour], axis=1) * (AMBIENT + (1 - AMBIENT) * facing)[:, None]
-    return shown
+def carved_sphere(texture: ColourTexture, side: int) -> Picture:
+    """Return the rendering (side, side, 3), linear, of a sphere carved from the solid texture, a texel to a pixel, on white."""
+    return render(painted(texture, side / 2), "sphere", size=(side, side), background=1.0)

@@ -130,7 +130,8 @@ def _driven(
     gain = tuple(float(1.0 / max(v, 1e-4)) for v in mean)
     heights: tuple[float, ...] = ()
     if driver in ("height", "hollow"):
-        heights = relief_quantiles(detail, objective.surface.view.pixel * max(target.mask.shape), tuple(CURVE_PROBABILITIES.tolist()))
+        side = objective.surface.view.pixel * max(target.mask.shape)
+        heights = relief_quantiles(detail, side, tuple(CURVE_PROBABILITIES.tolist()))
     colour = DetailColour(
         driver=driver, texels_per_unit=1.0 / objective.surface.view.pixel, gain=gain, heights=heights, texture=texture,  # type: ignore[arg-type]
     )
