@@ -5,7 +5,7 @@ Under one light and a uniform sky the picture is linear in the three coefficient
     I = Ka A + Kd D + Ks S_n
 
 A: share of the sky that is seen, cosine-weighted; 1 on a bare plane. D: E max(0, n . l) V. Both carry the factor by
-which albedo varies with height and grain. S_n: the modified Phong lobe (n + 2) / 2 cos^n(alpha) E max(0, n . l) V,
+which albedo varies with height, grain and colour. S_n: the modified Phong lobe (n + 2) / 2 cos^n(alpha) E max(0, n . l) V,
 alpha between the view and the mirrored light; E irradiance over pi, V the visibility of the light. Sample positions are
 a fixed grid in each pixel: no grain, so the metric never sees any.
 """
@@ -37,6 +37,7 @@ broader lobe could not be told from diffuse light."""
 class Components:
     """Unit components of a picture, each (H, W) float32; specular holds one picture for each exponent of ``shininess``.
 
+    ambient and diffuse are (H, W, 3) where the surface has a colour of its own.
     covered: the share of each pixel that the surface fills, 0 to 1.
     """
 
@@ -48,10 +49,13 @@ class Components:
 
     def luminance(self, ambient: float, diffuse: float, specular: float, shininess: float) -> NDArray[np.float32]:
         """Return Ka A + Kd D + Ks S for an exponent that was rendered."""
-        picture = ambient * self.ambient + diffuse * self.diffuse
-        if specular > 0:
-            picture = picture + specular * self.specular[self.shininess.index(shininess)]
+        picture = ambient * self.ambient + diffuse * self.diffuse + self._gloss(specular, shininess)
         return np.asarray(picture, dtype=np.float32)
+
+    def _gloss(self, specular: float, shininess: float) -> NDArray[np.float32]:
+        if specular <= 0:
+            return np.zeros_like(self.covered)
+        return np.asarray(specular * self.specular[self.shininess.index(shininess)], dtype=np.float32)
 
     def colour(self, reflectance: Reflectance, behind: float | tuple[float, float, float] = 0.0) -> NDArray[np.float32]:
         """Return the picture (H, W, 3) under ``reflectance``: its tint colours all but the highlight.
@@ -60,9 +64,11 @@ class Components:
         """
         tint = np.asarray(reflectance.tint, dtype=np.float32)
         matt = reflectance.ambient * self.ambient + reflectance.diffuse * self.diffuse
-        gloss = self.luminance(0.0, 0.0, reflectance.specular, reflectance.shininess)
+        if matt.ndim == 2:
+            matt = matt[..., None]
+        gloss = self._gloss(reflectance.specular, reflectance.shininess)
         through = (1.0 - self.covered[..., None]) * np.asarray(behind, dtype=np.float32)
-        return np.asarray(matt[..., None] * tint + gloss[..., None] + through, dtype=np.float32)
+        return np.asarray(matt * tint + gloss[..., None] + through, dtype=np.float32)
 
 
 def components(
@@ -74,20 +80,26 @@ def components(
     Of a volume: what is covered is 1 - its transmittance; a medium that scatters has lobes of 0.
     """
     if isinstance(surface, MarchedVolume):
-        pictures = surface.march(lamp, subsamples, shininess)
+        covered, ambient, diffuse, *lobes = surface.march(lamp, subsamples, shininess)
+        pictures = [covered], [ambient], [diffuse], lobes
     else:
         pictures = _reflected(surface, lamp, subsamples, shininess)
     dr.eval(pictures)
     shape = (surface.view.rows, surface.view.columns)
-    pooled = [_pool(np.asarray(p), shape, subsamples) for p in pictures]
-    lobes_pooled = np.stack(pooled[3:]) if shininess else np.zeros((0, *shape), dtype=np.float32)
-    return Components(pooled[1], pooled[2], lobes_pooled, shininess, pooled[0])
+    covered, ambient, diffuse, lobes = ([_pool(np.asarray(p), shape, subsamples) for p in part] for part in pictures)
+    specular = np.stack(lobes) if shininess else np.zeros((0, *shape), dtype=np.float32)
+    return Components(_channels(ambient), _channels(diffuse), specular, shininess, covered[0])
+
+
+def _channels(pictures: list[NDArray[np.float32]]) -> NDArray[np.float32]:
+    """Return one picture (H, W), or three as (H, W, 3)."""
+    return pictures[0] if len(pictures) == 1 else np.stack(pictures, axis=-1)
 
 
 def _reflected(
     surface: HeightField | TracedMesh, lamp: Lamp, subsamples: int, shininess: tuple[float, ...]
-) -> list[Any]:
-    """Return (covered, ambient, diffuse, a lobe for each of ``shininess``) of a surface's samples, row by row."""
+) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
+    """Return covered, ambient, diffuse (one or three channels) and a lobe for each of ``shininess`` of a surface's samples."""
     mi = mitsuba()
     points, normals, sky, seen, albedo = surface.look(subsamples)
     direction, distance, irradiance = lamp.at(points)
@@ -102,8 +114,9 @@ def _reflected(
         lobe = dr.select(mirrored > 0.0, dr.power(dr.maximum(mirrored, 1e-8), n), 0.0)
         lobes.append(0.5 * (n + 2.0) * lobe * received)
     covered = dr.select(seen, 1.0, dr.zeros(mi.Float, dr.width(points)))
-    ambient = dr.select(seen, sky * albedo, 0.0)
-    return [covered, ambient, received * albedo, *lobes]
+    channels = albedo if isinstance(albedo, tuple) else (albedo,)
+    ambient = [dr.select(seen, sky * factor, 0.0) for factor in channels]
+    return [covered], ambient, [received * factor for factor in channels], lobes
 
 
 def _pool(samples: NDArray[np.float32], shape: tuple[int, int], subsamples: int) -> NDArray[np.float32]:

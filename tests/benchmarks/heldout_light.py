@@ -179,12 +179,12 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
         return setup_from(
             {
                 "photo": {"path": f"{capture.name}.png", "zone": zone}, "light": light,
-                "mask": _mask(capture.name), "fit": {"evaluations": evaluations},
+                "mask": mask_of(capture.name), "fit": {"evaluations": evaluations},
             },
             capture.name,
         )
 
-    setup = setup_of(_flash(first), capture.zone)
+    setup = setup_of(flash(first), capture.zone)
     result = fit(setup, photo=first.load())
     target, detail = result.target, result.detail
     surface, bumps = build(setup, target.shape, target.zone), build(setup, target.shape, target.zone)
@@ -235,7 +235,7 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
     }
 
 
-def _flash(shot: Shot) -> Light:
+def flash(shot: Shot) -> Light:
     """The light to fit under: a near one that moves with the camera is a flash, as long as its foot is in the photo."""
     if not shot.at_camera or shot.light.position is None:
         return shot.light
@@ -247,7 +247,7 @@ def _flash(shot: Shot) -> Light:
         return shot.light
 
 
-def _mask(name: str) -> str | None:
+def mask_of(name: str) -> str | None:
     path = MULTILIGHT / name / "mask.png"
     return str(path) if path.exists() else None
 

@@ -153,6 +153,13 @@ def save_sheet(path: Path, rows: Sequence[Sequence[Picture]], gap: int = 4) -> N
         lines.append(np.concatenate(spaced, axis=1))
     page = Image.fromarray(np.round(np.concatenate(lines) * 255).astype(np.uint8))
     path.parent.mkdir(parents=True, exist_ok=True)
+    if path.suffix == ".jpg":
+        # Where colours are what is looked at: a palette of the sheet's would merge them.
+        for quality in (92, 84, 72, 60):
+            page.save(path, quality=quality, optimize=True)
+            if path.stat().st_size <= SHEET_BYTES:
+                return
+        return
     for colours in (128, 64, 32, 16):
         page.quantize(colours, dither=Image.Dither.NONE).save(path, optimize=True)
         if path.stat().st_size <= SHEET_BYTES:

@@ -19,7 +19,7 @@ ALLOWED: dict[str, set[str]] = {
     "report": {"detail", "image"},
     "apply": {"scene", "render", "detail", "image", "backend"},
     "export": {"scene", "render", "detail", "image", "backend"},
-    "fit": {"scene", "render", "metric", "detail", "image", "backend"} | VERSION,
+    "fit": {"scene", "render", "metric", "texture", "detail", "image", "backend"} | VERSION,
     "library": {"scene", "render", "metric", "detail", "image", "backend"},
     "render": {"scene", "detail", "backend"},  # scene: what it renders; detail: the reflectance it is seen with
     "scene": {"noise", "texture", "detail", "image", "backend"},

@@ -16,7 +16,8 @@ from voldetail.render import components, traced_picture
 from voldetail.scene.environment import environment_emitter
 from voldetail.scene.lamp import Lamp, lamp_of
 from voldetail.scene.lights_text import direction_of
-from voldetail.scene.phong import phong_dict, principled_equivalent
+from voldetail.scene.phong import Diffuse, phong_dict, principled_equivalent, vertex_diffuse
+from voldetail.scene.pigment import patterned
 from voldetail.scene.proxy import make_proxy
 from voldetail.scene.setup import CameraSetup, Light, ProxySetup
 from voldetail.scene.surface import MeshSurface, TracedMesh
@@ -166,7 +167,9 @@ def _lit(
 
 def _bsdf(detail: Detail, shading: Shading) -> dict[str, Any]:
     r = detail.reflectance
-    diffuse = [min(r.diffuse * c, 1.0) for c in r.tint]
+    diffuse: Diffuse = [min(r.diffuse * c, 1.0) for c in r.tint]
+    if patterned(detail):
+        diffuse = vertex_diffuse()
     if shading == "principled":
         return principled_equivalent(diffuse, r.specular, r.shininess)
     return phong_dict(diffuse, r.specular, r.shininess)

@@ -38,15 +38,16 @@ def quiet(sentence: str) -> None:
 
 def place(
     detail: Detail, proxy: ProxySetup, view: View, *, scale: float = 1.0, whole_plane: bool = False, edge: float | None = None,
-    tell: Tell = quiet,
+    whole_grid: bool = False, tell: Tell = quiet,
 ) -> Volume:
     """Return ``proxy`` ready for ``detail``, on cells about as large as a pixel or as the memory allows; nothing is baked yet.
 
+    ``whole_grid``: the densities themselves are wanted, and not, of solid matter, the surface alone.
     ``tell`` gets a sentence with the cells, the memory and the time that this will take. Raises InputError for an open mesh.
     """
     solid = detail.medium is None
     wanted = edge or SOLID_PIXELS * view.pixel
-    if detail.medium is not None:
+    if detail.medium is not None and edge is None:
         # As fine as its edge needs, between half a pixel and what a soft one makes do with.
         needed = detail.medium.thickness * scale / thinnest_edge(1.0, detail.medium.exponent)
         wanted = min(max(needed, 0.5 * view.pixel), MEDIUM_PIXELS * view.pixel)
@@ -54,7 +55,8 @@ def place(
     while True:
         # A medium's own plan does not know what marching it takes on top, which is what is held against the budget below.
         allowed = BUDGET if solid else NO_LIMIT
-        volume = Volume(proxy, view, edge=used, scale=scale, whole_plane=whole_plane, budget=allowed, tiles=solid)
+        tiles = solid and not whole_grid
+        volume = Volume(proxy, view, edge=used, scale=scale, whole_plane=whole_plane, budget=allowed, tiles=tiles)
         try:
             plan = planned(volume, detail)
         except OverBudgetError:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rich.table import Table
 
 from voldetail.cli.console import output
+from voldetail.cli.photo_argument import photo_path
 from voldetail.errors import InputError
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def compare(
 def _read(name: str, mask: Path | None, resolution: int | None) -> _Picture:
     from voldetail.image import load_mask, load_photo, luminance, resize, resize_mask
 
-    photo = load_photo(_path(name))
+    photo = load_photo(photo_path(name))
     used = load_mask(mask, photo.pixels.shape[:2]) if mask is not None else None
     if photo.opaque is not None:
         used = photo.opaque if used is None else used & photo.opaque
@@ -90,23 +91,6 @@ def _read(name: str, mask: Path | None, resolution: int | None) -> _Picture:
             f"{name} has {columns} x {rows} pixels, too many to compare; give --resolution, e.g. 1000."
         )
     return _Picture(name, light, used)
-
-
-def _path(name: str) -> str | Path:
-    """The file of a picture; `skimage:gravel` and the like are photographs that scikit-image ships."""
-    from voldetail.scene.setup import SKIMAGE_PHOTOS, SKIMAGE_PREFIX
-
-    if not name.startswith(SKIMAGE_PREFIX):
-        return name
-    from importlib.util import find_spec
-
-    from voldetail.detail.parameters import nearest
-
-    word = name.removeprefix(SKIMAGE_PREFIX)
-    found = find_spec("skimage")
-    if word not in SKIMAGE_PHOTOS or found is None or found.origin is None:
-        raise InputError(f"There is no photo {name[:60]!r}; {nearest(word, list(SKIMAGE_PHOTOS))}.")
-    return Path(found.origin).parent / "data" / f"{word}.png"
 
 
 def _halves(a: _Picture, metric: str) -> dict[str, float] | None:

@@ -61,6 +61,12 @@ def fit(
             rich_help_panel=SCENE,
         ),
     ] = None,
+    colour: Annotated[
+        _Text,
+        typer.Option(
+            help="by-example, height, cell, none, or auto: whichever is nearest to the photo (default).", rich_help_panel=SCENE
+        ),
+    ] = None,
     mask: Annotated[
         _Text, typer.Option(help="A picture of the photo's size: white is used.", rich_help_panel=WHERE)
     ] = None,
@@ -129,7 +135,8 @@ def fit(
         "--light": light, "--proxy": proxy, "--rotation": rotation, "--camera": camera, "--fov": fov,
         "--mask": mask, "--zone": zone, "--resolution": resolution, "--output": folder, "--domain": domain,
         "--amplitude": amplitude, "--specular": specular, "--solver": solver, "--metric": metric,
-        "--mode": mode, "--look": look, "--seed": seed, "--evaluations": evaluations, "--time-limit": time_limit,
+        "--mode": mode, "--look": look, "--colour": colour, "--seed": seed, "--evaluations": evaluations,
+        "--time-limit": time_limit,
     }  # fmt: skip
     setup = read_setup(photo, options, override or [])
     place = FitFolder(output_folder(setup), setup)

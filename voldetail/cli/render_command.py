@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from voldetail.cli.arguments import angles, mesh, numbers, size
+from voldetail.cli.arguments import angles, numbers, size
 from voldetail.cli.console import output, remarks
 from voldetail.cli.outputs import check_file, check_folder, make_folder, remove
+from voldetail.cli.shape_options import MESH_HELP, DetailFile, Rotation, Scale, rotation_of, shape_of, tell
 from voldetail.cli.threads import use_threads
 from voldetail.detail import load_detail
 from voldetail.errors import InputError
@@ -19,21 +20,13 @@ if TYPE_CHECKING:
     from voldetail.detail import Detail
     from voldetail.scene.setup import CameraSetup
 
-DETAIL_HELP = "A detail file, as fit makes it."
 RENDER_LIGHTS = "AZ,EL in degrees, x,y,z or point:x,y,z"
-MESH_HELP = "plane, sphere, ellipsoid, box, cylinder, or a mesh file."
 ENVIRONMENT_BYTES = 2**30
 ENVIRONMENT_SUFFIXES = (".exr", ".hdr")
 ANIMATION_SECONDS = 0.12  # a frame
 MOST_FRAMES = 720
 BRIGHTEST = 1e3
 
-_Scale = Annotated[
-    float, typer.Option(min=1e-3, max=1e3, help="How many times larger the relief is than in the photo.")
-]
-_Rotation = Annotated[
-    str | None, typer.Option(help="The shape's turns about x, y, z in degrees, e.g. -60,0,0.")
-]
 _Fov = Annotated[
     float | None,
     typer.Option(min=1, max=150, help="Degrees across; a perspective camera. Default: orthographic."),
@@ -45,12 +38,11 @@ _Background = Annotated[
     ),
 ]
 _Subsamples = Annotated[int, typer.Option(min=1, max=8, help="Samples a pixel, each way, under a light.")]
-_Detail = Annotated[Path, typer.Argument(help=DETAIL_HELP)]
 
 
 def render(
     context: typer.Context,
-    detail: _Detail,
+    detail: DetailFile,
     shape: Annotated[str, typer.Argument(metavar="MESH", help=MESH_HELP)],
     out: Annotated[Path, typer.Option("--output", "-o", help="The picture: .png, .jpg or .exr (linear).")],
     light: Annotated[
@@ -59,12 +51,12 @@ def render(
     envmap: Annotated[
         Path | None, typer.Option(help="Light from an environment map (.exr or .hdr) instead.")
     ] = None,
-    scale: _Scale = 1.0,
+    scale: Scale = 1.0,
     pixels: Annotated[str, typer.Option("--size", help="WIDTHxHEIGHT in pixels.")] = "640x480",
     shading: Annotated[
         str, typer.Option(help="phong (as fitted) or principled (physically based).")
     ] = "phong",
-    rotation: _Rotation = None,
+    rotation: Rotation = None,
     fov: _Fov = None,
     samples: Annotated[
         int, typer.Option(min=1, max=65536, help="Samples a pixel, for --envmap and principled.")
@@ -90,13 +82,13 @@ def render(
     options: dict[str, Any] = {
         "light": lit,
         "envmap": _environment(envmap) if envmap is not None else None,
-        "scale": scale, "size": size(pixels), "camera": _camera(fov), "rotation": _rotation(rotation),
+        "scale": scale, "size": size(pixels), "camera": _camera(fov), "rotation": rotation_of(rotation),
         "subsamples": subsamples, "samples": samples, "shading": shading, "background": _background(background, record),
     }  # fmt: skip
-    shape = _shape(shape)
+    shape = shape_of(shape)
     use_threads(context.obj)
     with remarks().status(f"rendering {shape}"):
-        options["tell"] = _tell
+        options["tell"] = tell
         picture = picture_of(record, shape, **options)
     save_image(out, picture)
     output().print(f"{out}  {picture.shape[1]} x {picture.shape[0]} pixels", markup=False, soft_wrap=True)
@@ -104,7 +96,7 @@ def render(
 
 def relight(
     context: typer.Context,
-    detail: _Detail,
+    detail: DetailFile,
     azimuth: Annotated[
         str,
         typer.Option(
@@ -114,9 +106,9 @@ def relight(
     elevation: Annotated[str, typer.Option(help="Degrees above the picture, over 0 to 90 (-90 to 90 for a medium); as azimuth.")],
     folder: Annotated[Path, typer.Option("--output", "-o", help="The folder for the pictures.")],
     shape: Annotated[str, typer.Argument(metavar="[MESH]", help=MESH_HELP)] = "plane",
-    scale: _Scale = 1.0,
+    scale: Scale = 1.0,
     pixels: Annotated[str, typer.Option("--size", help="WIDTHxHEIGHT in pixels.")] = "480x480",
-    rotation: _Rotation = None,
+    rotation: Rotation = None,
     fov: _Fov = None,
     subsamples: _Subsamples = 2,
     background: _Background = "0",
@@ -141,12 +133,12 @@ def relight(
     if animation not in ("gif", "png", "none"):
         raise InputError(f"--animation {animation!r} is not known; use gif, png or none.")
     earlier = _free_folder(folder, force)
-    wide, turned, camera, shape = size(pixels), _rotation(rotation), _camera(fov), _shape(shape)
+    wide, turned, camera, shape = size(pixels), rotation_of(rotation), _camera(fov), shape_of(shape)
     behind = _background(background, record)
     use_threads(context.obj)
     frames = frames_of(
         record, shape, azimuths=azimuths, elevations=elevations, scale=scale, size=wide, camera=camera,
-        rotation=turned, subsamples=subsamples, background=behind, tell=_tell,
+        rotation=turned, subsamples=subsamples, background=behind, tell=tell,
     )  # fmt: skip
     _write_frames(folder, earlier, frames, count, animation, record.name)
     output().print(
@@ -204,13 +196,6 @@ def _camera(fov: float | None) -> CameraSetup | None:
     return None if fov is None else CameraSetup(kind="perspective", field_of_view=fov)
 
 
-def _rotation(text: str | None) -> tuple[float, float, float]:
-    if text is None:
-        return (0.0, 0.0, 0.0)
-    x, y, z = numbers(text, 3, "--rotation", "X,Y,Z in degrees")
-    return (x, y, z)
-
-
 def _background(text: str, record: Detail) -> tuple[float, float, float]:
     """The colour behind: from a number, R,G,B, or "photo"."""
     if text == "photo":
@@ -223,18 +208,6 @@ def _background(text: str, record: Detail) -> tuple[float, float, float]:
     if not all(0 <= v <= BRIGHTEST for v in values):
         raise InputError(f"--background {text} is out of range; each number has to be 0 to {BRIGHTEST:g}.")
     return values[0], values[-2 if len(values) > 1 else 0], values[-1]
-
-
-def _tell(sentence: str) -> None:
-    """Say what a volume will take before it is made."""
-    remarks().print(sentence, markup=False, soft_wrap=True)
-
-
-def _shape(text: str) -> str:
-    from voldetail.apply import KINDS
-    from voldetail.scene.mesh_files import SUFFIXES
-
-    return mesh(text, KINDS, SUFFIXES)
 
 
 def _environment(path: Path) -> Path:

@@ -1,5 +1,6 @@
 """The detail: its parameters, declared once, its frozen record and its versioned file."""
 
+from voldetail.detail.colour import ColourChannel, ColourTexture, DetailColour, Lobe
 from voldetail.detail.curves import MONOTONE_CURVES, START_CURVES
 from voldetail.detail.file import detail_from_text, detail_to_text, load_detail, rounded, save_detail, schema
 from voldetail.detail.parameters import PARAMETERS, Parameter, bounds, help_text, parameter
@@ -27,7 +28,11 @@ __all__ = [
     "PAPER_NEIGHBOURS",
     "PARAMETERS",
     "START_CURVES",
+    "ColourChannel",
+    "ColourTexture",
     "Detail",
+    "DetailColour",
+    "Lobe",
     "MediumParameters",
     "NoiseFloor",
     "NoiseParameters",

@@ -33,13 +33,20 @@ class ColourRecord(BaseModel):
 
 
 class Lobe(ColourRecord):
-    """One Gaussian pair in the power spectrum of an anisotropic noise: a Gabor kernel's, at plus and minus its frequency."""
+    """One Gaussian pair in the power spectrum of an anisotropic noise: a Gabor kernel's, at plus and minus its frequency.
+
+    Its ellipse lies along and across its frequency: fibres and ripples have spectra thin one way, which a few ellipses
+    follow and circles do not.
+    """
 
     frequency: float = Field(ge=0, le=0.75, description="The radial frequency of its centre, in cycles per texel.")
     angle: float = Field(
         ge=0, le=3.141593, description="The direction of the frequency, counter-clockwise from x (y up), in radians."
     )
-    bandwidth: float = Field(gt=0, le=0.5, description="The standard deviation of the Gaussian, in cycles per texel.")
+    bandwidth: float = Field(gt=0, le=0.5, description="The Gaussian's standard deviation along its frequency, cycles per texel.")
+    across: float | None = Field(
+        default=None, gt=0, le=0.5, description="The same at right angles to its frequency; left out where both are equal."
+    )
     variance: float = Field(ge=0, le=1e8, description="The variance that the lobe adds to the noise.")
 
 
@@ -48,7 +55,8 @@ class ColourChannel(ColourRecord):
 
     weights: w_i of the wavelet bands, the finest (wavelengths of 2 to 4 texels) first, 1 to 14 of them.
     lobes: in place of the bands where the texture is anisotropic; then weights is empty.
-    curve: values of the channel at the probabilities `curve_probabilities`, not decreasing.
+    curve: values of the channel at ten probabilities (`texture.curve.CURVE_PROBABILITIES`: equal steps of the normal law's
+        quantile from -3.2 to 3.2), not decreasing.
     """
 
     weights: tuple[Weight, ...] = Field(max_length=MOST_BANDS, description="Weights of the wavelet bands, finest first.")
@@ -90,5 +98,38 @@ class ColourTexture(ColourRecord):
             for j, b in enumerate(rows):
                 product = sum(p * q for p, q in zip(a, b, strict=True))
                 if abs(product - (i == j)) > ORTHONORMAL_TOLERANCE:
-                    raise ValueError("the axes are no rotation: each has to have length 1 and stand at right angles to the others")
+                    raise ValueError("the axes are no rotation: each needs length 1, at right angles to the others")
+        return self
+
+
+class DetailColour(ColourRecord):
+    """The colour of a detail's surface: a factor on what it reflects of the sky and the light's beam.
+
+        Kd tint f(x),    f(x) = gain colour(texels_per_unit x)
+
+    driver: what moves the first channel of the texture: its own noise (by example), the relief's height, the depth of its
+    hollows (height, the other way round), or the cell's own number; the others always have their noise. heights: R at the
+    probabilities of the curve, where it drives.
+    """
+
+    driver: Literal["noise", "height", "hollow", "cell"] = Field(
+        default="noise", description="What moves the most varied channel: noise, the relief's height or hollows, or the cell."
+    )
+    texels_per_unit: float = Field(gt=0, le=1e5, description="Texels of the photo in one scene unit.")
+    gain: tuple[Weight, Weight, Weight] = Field(
+        description="Linear red, green and blue that the texture is multiplied by: one over its mean."
+    )
+    heights: tuple[Annotated[float, Field(ge=0, le=1)], ...] = Field(
+        default=(), max_length=CURVE_SAMPLES, description="The relief's height at the curve's probabilities, where it drives."
+    )
+    texture: ColourTexture = Field(description="The texture.")
+
+    @model_validator(mode="after")
+    def _heights(self) -> DetailColour:
+        driven = self.driver in ("height", "hollow")
+        if len(self.heights) != (CURVE_SAMPLES if driven else 0):
+            wanted = f"{CURVE_SAMPLES} heights" if driven else "no heights"
+            raise ValueError(f"a colour with the driver {self.driver!r} needs {wanted}, and {len(self.heights)} are given")
+        if any(b < a for a, b in zip(self.heights, self.heights[1:], strict=False)):
+            raise ValueError("the heights decrease; each of them has to be at least the one before")
         return self

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import json
-import math
-import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
+from voldetail.detail.json_text import Migration, json_text, migrated, of_format, parsed
 from voldetail.detail.parameters import PARAMETERS, parameter
 from voldetail.detail.reading import read_small_text
 from voldetail.detail.record import (
@@ -21,17 +19,15 @@ from voldetail.detail.record import (
     Reflectance,
     ReliefParameters,
 )
-from voldetail.detail.refusal import printable, refusal, shown
+from voldetail.detail.refusal import printable, refusal
 from voldetail.errors import InputError
 from voldetail.files import write_text
 
 FORMAT = "voldetail.detail"
-SIGNIFICANT_DIGITS = 7  # a float32 has seven: the noise and the renderer work in float32
 _GROUPS = tuple(dict.fromkeys(p.key.split(".")[0] for p in PARAMETERS))
 _OPTIONAL = "medium"
 """The group that a detail may be without."""
 
-Migration = Callable[[dict[str, Any]], dict[str, Any]]
 MIGRATIONS: dict[int, Migration] = {}
 """Entry n brings the parsed file of version n to version n + 1; version 1 is the first: none yet."""
 
@@ -54,15 +50,13 @@ def save_detail(path: Path | str, detail: Detail) -> None:
 def detail_to_text(detail: Detail) -> str:
     """The text of the detail file; raises InputError if `provenance.settings` holds what JSON cannot."""
     data = {"format": FORMAT, **detail.model_dump(mode="json")}
-    if detail.medium is None:
-        del data["medium"]  # most details have none, and a reader is not to wonder about it
+    for group in ("medium", "colour"):
+        if data[group] is None:
+            del data[group]  # most details have none, and a reader is not to wonder about it
     try:
-        text = json.dumps(_rounded(data), indent=2, ensure_ascii=False, allow_nan=False)
+        return json_text(data)
     except ValueError:
         raise InputError("provenance.settings holds a number that is not finite; leave it out.") from None
-    # Lists of numbers on one line each. A string cannot match: JSON writes its line breaks as \n.
-    numbers = re.compile(r'\[\n\s*([^\[\]{}"]*?)\n\s*\]')
-    return numbers.sub(lambda m: "[" + re.sub(r",\n\s*", ", ", m.group(1)) + "]", text) + "\n"
 
 
 def rounded(detail: Detail) -> Detail:
@@ -72,11 +66,9 @@ def rounded(detail: Detail) -> Detail:
 
 def detail_from_text(text: str, where: str = "The detail") -> Detail:
     """The detail in the JSON `text`; errors (InputError) start with `where`."""
-    data = _parsed(text, where)
-    if data.get("format") != FORMAT:
-        found = shown(data.get("format"))
-        raise InputError(f'{where} is not a detail file: its "format" is {found}, not "{FORMAT}".')
-    data = _migrated(data, where)
+    data = parsed(text, where, "detail file")
+    of_format(data, FORMAT, where, "detail file")
+    data = migrated(data, DETAIL_VERSION, MIGRATIONS, where)
     del data["format"]
     _refuse_missing(data, where)
     try:
@@ -120,61 +112,3 @@ def schema() -> dict[str, Any]:
         names = [name for name in record.model_fields if f"{group}.{name}" not in later]
         made["$defs"][record.__name__]["required"] = names
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **made}
-
-
-def _rounded(value: Any) -> Any:
-    if isinstance(value, float):
-        return float(f"{value:.{SIGNIFICANT_DIGITS}g}")
-    if isinstance(value, dict):
-        return {k: _rounded(v) for k, v in value.items()}
-    if isinstance(value, list):
-        return [_rounded(v) for v in value]
-    return value
-
-
-def _parsed(text: str, where: str) -> dict[str, Any]:
-    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        table: dict[str, Any] = {}
-        for key, value in pairs:
-            if key in table:
-                raise InputError(f"{where} has the key {shown(key)} twice; leave one.")
-            table[key] = value
-        return table
-
-    def finite(number: str) -> float:
-        value = float(number)
-        if not math.isfinite(value):
-            raise InputError(f"{where} holds {shown(number)}, which is not a finite number.")
-        return value
-
-    try:
-        data = json.loads(text, object_pairs_hook=once, parse_float=finite, parse_constant=finite)
-    except json.JSONDecodeError as error:
-        at = f"line {error.lineno}, column {error.colno}"
-        raise InputError(f"{where} is not valid JSON: {error.msg} in {at}.") from None
-    except (ValueError, RecursionError):
-        raise InputError(f"{where} holds a value that is too large or too deeply nested.") from None
-    if not isinstance(data, dict):
-        raise InputError(f"{where} is not a detail file: it holds {shown(data)} and not a table.")
-    return data
-
-
-def _migrated(data: dict[str, Any], where: str) -> dict[str, Any]:
-    version = data.get("version")
-    if not isinstance(version, int) or isinstance(version, bool):
-        raise InputError(
-            f'{where} has no usable "version": {shown(version)}; allowed: 1 to {DETAIL_VERSION}.'
-        )
-    if version > DETAIL_VERSION:
-        raise InputError(
-            f"{where} has version {shown(version)}, made by a newer voldetail: update"
-            f" (this one reads up to version {DETAIL_VERSION})."
-        )
-    for step in range(version, DETAIL_VERSION):
-        if step not in MIGRATIONS:
-            raise InputError(
-                f"{where} has version {shown(version)}, which this voldetail cannot read;"
-                f" it reads {min([*MIGRATIONS, DETAIL_VERSION])} to {DETAIL_VERSION}."
-            )
-        data = {**MIGRATIONS[step](data), "version": step + 1}
-    return {**data, "format": FORMAT}

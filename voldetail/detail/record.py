@@ -16,6 +16,7 @@ from pydantic import (
     model_validator,
 )
 
+from voldetail.detail.colour import DetailColour
 from voldetail.detail.parameters import PARAMETERS, declared, limits, parameter
 from voldetail.detail.refusal import refusal
 from voldetail.errors import InputError
@@ -193,6 +194,9 @@ class Detail(Record):
     medium: MediumParameters | None = Field(
         default=None, description="Of a volume that light passes through; without it a volume is solid."
     )
+    colour: DetailColour | None = Field(
+        default=None, description="The colour of the surface, where it is more than one tint."
+    )
     provenance: Provenance | None = Field(default=None, description="Where the detail came from.")
     noise_floor: NoiseFloor = Field(default_factory=NoiseFloor, description="Distances that chance alone gives.")
 
@@ -209,6 +213,8 @@ class Detail(Record):
             used = [name for name in own if getattr(self.reflectance, name) != 0.0]
             if used:
                 raise ValueError(f"a medium has no highlight and no pattern of albedo: set reflectance.{used[0]} to 0")
+            if self.colour is not None:
+                raise ValueError("a medium has one tint and no colour of its surface: leave colour out")
         return self
 
 

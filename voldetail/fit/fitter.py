@@ -13,6 +13,7 @@ from voldetail.backend import mitsuba
 from voldetail.detail import Detail, bounds, rounded
 from voldetail.errors import InputError, VoldetailError
 from voldetail.fit.autolight import resolve_light
+from voldetail.fit.colour import ColourChoice, choose_colour
 from voldetail.fit.interval import AmplitudeInterval, amplitude_interval
 from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.objective import Evaluation, Objective
@@ -45,6 +46,9 @@ FINEST_OCTAVE = 1.6
 """Pixels a cell of the finest octave must span, near the sampling limit of the mesh's one vertex a pixel."""
 
 
+COLOUR_SEEDS = 3
+"""Noise seeds that judge the tries of a colour, and as many for the relief's shading."""
+
 INTERVAL_SEEDS = 2
 """Noise seeds for the intervals of numbers."""
 
@@ -59,6 +63,7 @@ class FitResult:
 
     setup: the one that was fitted, with the direction found where its light was "auto", and then light_guess.
     heights: the amplitudes that fit about as well; None where the user gave the amplitude or stopped the fit.
+    colour: what was chosen for the colour, and how far each try was from the photo.
     told: for a medium, what the photo tells of each of its numbers; empty for other details, and where the fit was stopped.
     picture (H, W): its luminance. covered (H, W): the share of each pixel that is filled; background: what shows through.
     """
@@ -78,10 +83,13 @@ class FitResult:
     light_guess: LightGuess | None = None
     heights: AmplitudeInterval | None = None
     told: tuple[Told, ...] = ()
+    colour: ColourChoice | None = None
 
     @property
     def coloured(self) -> NDArray[np.float32]:
         """The picture (H, W, 3) in the photo's colours."""
+        if self.colour is not None and self.detail.colour is not None and self.detail.mode == "displacement":
+            return self.colour.picture
         behind = np.asarray(self.background, dtype=np.float32)
         through = (1.0 - self.covered)[..., None] * behind
         matt = np.maximum(self.picture - luminance(through), 0.0)[..., None]
@@ -129,12 +137,15 @@ def fit(
     heights = None if interrupted else _heights(setup, session, final)
     told = () if interrupted else _told(session, final)
     final, background = coloured(target, final)
+    colour = None if interrupted else _colour(setup, session, final)
+    if colour is not None:
+        final = replace(final, detail=colour.detail)
     return FitResult(
-        detail=signed(final, setup, target, session, Findings(status, light_guess, heights, told, background)),
+        detail=signed(final, setup, target, session, Findings(status, light_guess, heights, told, background, colour)),
         setup=setup, target=target,
         picture=final.picture, covered=final.covered, background=background, distance=final.distance,
         evaluations=session.evaluations, seconds=session.seconds, status=status, trace=tuple(session.trace),
-        interrupted=interrupted, light_guess=light_guess, heights=heights, told=told,
+        interrupted=interrupted, light_guess=light_guess, heights=heights, told=told, colour=colour,
     )
 
 
@@ -246,3 +257,15 @@ def _told(session: Session, final: Evaluation) -> tuple[Told, ...]:
         return told_of_medium(session.coarse, final.detail, [session.unseen_seed(index) for index in range(INTERVAL_SEEDS)])
     except KeyboardInterrupt:
         return ()
+
+
+def _colour(setup: Setup, session: Session, final: Evaluation) -> ColourChoice | None:
+    """Return the colour that the user asked for, None where nobody would wait for it."""
+    if setup.colour == "none" or final.detail.medium is not None:
+        return None
+    judges, shading = ([derived_seed(session.root_seed, f"{name}/{index}") for index in range(COLOUR_SEEDS)]
+                       for name in ("colour", "shading"))
+    try:
+        return choose_colour(session.fine, final.detail, setup.colour, judges, shading, setup.photo.name[:200])
+    except KeyboardInterrupt:
+        return None

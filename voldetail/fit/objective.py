@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,8 +86,9 @@ class Objective:
 
     def _looked_at(self, detail: Detail, seed: int | None) -> tuple[Detail, Components]:
         self.evaluations += 1
-        if seed is not None:
-            detail = detail.model_copy(update={"seed": seed})
+        # What is compared is luminance, under the tint that is solved: colour is learnt when the relief is found.
+        changes: dict[str, Any] = {"colour": None} if seed is None else {"colour": None, "seed": seed}
+        detail = detail.model_copy(update=changes)
         self.surface.update(detail)
         return detail, components(self.surface, self.target.lamp, subsamples=self.subsamples, shininess=SHININESS)
 

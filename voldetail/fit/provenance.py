@@ -12,6 +12,7 @@ from voldetail import __version__
 from voldetail.detail import Detail, NoiseFloor, Provenance, rounded
 from voldetail.errors import InputError
 from voldetail.files import sha256
+from voldetail.fit.colour import ColourChoice
 from voldetail.fit.interval import AmplitudeInterval
 from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.objective import Evaluation
@@ -32,6 +33,7 @@ class Findings:
     heights: AmplitudeInterval | None
     told: tuple[Told, ...]
     background: tuple[float, float, float]
+    colour: ColourChoice | None = None
 
 
 def signed(
@@ -47,6 +49,9 @@ def signed(
         settings["amplitude_interval"] = {key: float(f"{value:.3g}") for key, value in found.heights.ends.items()}
     if found.told:
         settings["medium_intervals"] = {t.key: [float(f"{v:.3g}") for v in (t.low, t.high)] for t in found.told}
+    if found.colour is not None:
+        far: dict[str, JsonValue] = {driver: float(f"{value:.4g}") for driver, value in found.colour.distances.items()}
+        settings["colour"] = {"chosen": found.colour.chosen, "distances": far}
     if final.detail.medium is not None:
         settings["background"] = [float(f"{value:.4g}") for value in found.background]
     version = importlib.metadata.version

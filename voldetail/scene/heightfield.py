@@ -16,6 +16,7 @@ import numpy as np
 
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
+from voldetail.scene.pigment import factor_of, factors_of
 from voldetail.scene.relief import relief_and_albedo
 from voldetail.scene.view import View
 
@@ -62,13 +63,13 @@ class HeightField:
 
     def update(self, detail: Detail) -> None:
         """Compute heights A_d R and the albedo's factor, and raise the plane to them."""
-        relief, albedo = relief_and_albedo(detail, self.domain)
+        relief, albedo = relief_and_albedo(detail, self.domain, spacing=self.step)
         self.raise_to(relief * dr.opaque(self.float_type, detail.relief.amplitude), albedo)
 
     def raise_to(self, heights: Any, albedo: Any = None) -> None:
         """Set the heights of the vertices, row by row, and what follows: normals and the sky's visibility.
 
-        ``albedo`` is the factor on the albedo at each vertex; None for 1.
+        ``albedo`` is the factor on the albedo at each vertex, or three; None for 1.
         """
         self.z, self.albedo = heights, albedo
         dr.eval(self.z, self.albedo)
@@ -113,12 +114,11 @@ class HeightField:
         """Return (points, unit normals, sky visibility, seen at all, albedo factor) of the samples, row by row."""
         mi = mitsuba()
         gx, gy = self._grid(subsamples)
-        fields = (self.z, *self.normal, self.sky) + (() if self.albedo is None else (self.albedo,))
-        z, nx, ny, nz, sky, *albedo = self._interpolate(gx, gy, fields)
+        z, nx, ny, nz, sky, *albedo = self._interpolate(gx, gy, (self.z, *self.normal, self.sky, *factors_of(self.albedo)))
         x = self.view.left + (gx - MARGIN) * self.step
         y = self.view.top - (gy - MARGIN) * self.step
         points, normals = mi.Point3f(x, y, z + self.base), dr.normalize(mi.Vector3f(nx, ny, nz))
-        return points, normals, sky, mi.Bool(True), albedo[0] if albedo else 1.0
+        return points, normals, sky, mi.Bool(True), factor_of(albedo)
 
     def _grid(self, subsamples: int) -> tuple[Any, Any]:
         mi = mitsuba()

@@ -16,10 +16,15 @@ from numpy.typing import NDArray
 
 from voldetail.errors import InputError
 from voldetail.files import readable
+from voldetail.scene.density_file import SUFFIX as DENSITY_SUFFIX
+from voldetail.scene.density_file import read_density
 
 MAX_BYTES = 512 * 2**20  # of a file: five million faces as text
 MAX_FACES = 5_000_000  # about 2 GB while they are read
-SUFFIXES = (".obj", ".ply", ".stl", ".off", ".glb", ".gltf")
+SUFFIXES = (".obj", ".ply", ".stl", ".off", ".glb", ".gltf", DENSITY_SUFFIX)
+OBJECT_LEVEL = 0.5
+"""Where the surface of an object that is stored as a density lies."""
+
 _BINARY_STL_HEADER = 84
 _HEADER_BYTES = 1 << 16
 
@@ -37,11 +42,14 @@ class Triangles:
 def read_triangles(path: Path) -> Triangles:
     """Read an OBJ, PLY, STL, OFF or glTF file by its suffix; the parts of a scene are put together in world space.
 
+    Of a density (.vol) the surface at half its greatest possible value is taken, closed where it meets its box.
     Raises InputError for another suffix, for a file too large, and for one that cannot be read.
     """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:  # before anything is opened: trimesh knows formats that run code or other programs
         raise InputError(f"The mesh {path} has the suffix {suffix or 'none'}; use one of {', '.join(SUFFIXES)}.")
+    if suffix == DENSITY_SUFFIX:
+        return _surface_of_density(path)
     readable(path, "mesh", MAX_BYTES)
     try:
         data = path.read_bytes()
@@ -61,6 +69,21 @@ def read_triangles(path: Path) -> Triangles:
         reason = " ".join(str(error).split())[:160] or type(error).__name__
         raise InputError(f"The mesh {path} is damaged or no {suffix} file ({reason}); export it again.") from error
     return Triangles(vertices, faces, uv, (data, *buffers.values()))
+
+
+def _surface_of_density(path: Path) -> Triangles:
+    from voldetail.scene.isosurface import march  # only here: it brings scikit-image, and the suffixes are wanted at once
+
+    density, lower, upper = read_density(path)
+    if not density.max() > OBJECT_LEVEL:
+        raise InputError(
+            f"The density file {path} holds nothing above {density.max():.3g}, and its surface is where it is {OBJECT_LEVEL};"
+            " scale it to 1."
+        )
+    steps, faces = march(np.pad(density, 1), OBJECT_LEVEL)
+    edge = (np.asarray(upper) - np.asarray(lower)) / np.asarray(density.shape[::-1])
+    _check_faces(len(faces), path)
+    return Triangles((steps - 0.5) * edge + np.asarray(lower), faces, None, (path.read_bytes(),))
 
 
 def _check_faces(count: int, path: Path) -> None:

@@ -24,6 +24,8 @@ import drjit as dr
 from voldetail.backend import mitsuba
 
 PLUGIN = "voldetail_phong"
+VERTEX_ALBEDO = "vertex_albedo"
+"""Attribute of a mesh that holds its vertices' albedo."""
 
 DIELECTRIC_SPECULAR = 0.08
 """Normal reflectance of Mitsuba's and Disney's `principled` at specular = 1 (Burley, 2012)."""
@@ -40,13 +42,25 @@ def register() -> str:
     return PLUGIN
 
 
-def phong_dict(diffuse: Sequence[float], specular: float, shininess: float) -> dict[str, Any]:
+Diffuse = Sequence[float] | dict[str, Any]
+"""A colour, or the Mitsuba dictionary of a texture."""
+
+
+def vertex_diffuse() -> dict[str, Any]:
+    """Return the Mitsuba dictionary of an albedo that a mesh's vertices carry."""
+    return {"type": "mesh_attribute", "name": VERTEX_ALBEDO}
+
+
+def _texture(diffuse: Diffuse) -> dict[str, Any]:
+    return diffuse if isinstance(diffuse, dict) else {"type": "rgb", "value": [float(c) for c in diffuse]}
+
+
+def phong_dict(diffuse: Diffuse, specular: float, shininess: float) -> dict[str, Any]:
     """Return the Mitsuba dictionary of the plugin, registered if it was not."""
-    colour = {"type": "rgb", "value": [float(c) for c in diffuse]}
-    return {"type": register(), "diffuse": colour, "specular": float(specular), "shininess": float(shininess)}
+    return {"type": register(), "diffuse": _texture(diffuse), "specular": float(specular), "shininess": float(shininess)}
 
 
-def principled_equivalent(diffuse: Sequence[float], specular: float, shininess: float) -> dict[str, Any]:
+def principled_equivalent(diffuse: Diffuse, specular: float, shininess: float) -> dict[str, Any]:
     """Return the Mitsuba dictionary of a `principled` BSDF that comes near Kd = ``diffuse``, Ks and n.
 
     Roughness: the peaks are made equal at normal incidence, where GGX has F D(0) / 4 = F / (4 pi alpha^2) and
@@ -65,7 +79,7 @@ def principled_equivalent(diffuse: Sequence[float], specular: float, shininess: 
     alpha = math.sqrt(1.0 / (2.0 * shininess + 4.0))
     return {
         "type": "principled",
-        "base_color": {"type": "rgb", "value": [float(c) for c in diffuse]},
+        "base_color": _texture(diffuse),
         "roughness": math.sqrt(alpha),
         "specular": min(max(specular / DIELECTRIC_SPECULAR, 0.0), 1.0),
     }

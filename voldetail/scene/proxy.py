@@ -24,13 +24,14 @@ class Proxy:
 
     positions (V, 3) and unit normals (V, 3) in scene units; faces (F, 3); domain (V, 3): where the noise is evaluated,
     for solid noise the position in the object's own frame, for surface noise its two parameters in scene units (and 0).
-    notes: what had to be mended in a mesh file.
+    own_normals (V, 3): before the object was turned. notes: what had to be mended in a mesh file.
     """
 
     positions: NDArray[np.float32]
     normals: NDArray[np.float32]
     faces: NDArray[np.uint32]
     domain: NDArray[np.float32]
+    own_normals: NDArray[np.float32]
     notes: tuple[str, ...] = ()
 
 
@@ -56,7 +57,8 @@ def make_proxy(setup: ProxySetup, edge: float, domain: str = "solid", limit: int
     return Proxy(
         positions=(positions @ turn.T + np.asarray(setup.position)).astype(np.float32),
         normals=(normals @ turn.T).astype(np.float32),
-        faces=faces.astype(np.uint32), domain=coordinates.astype(np.float32), notes=notes,
+        faces=faces.astype(np.uint32), domain=coordinates.astype(np.float32), own_normals=normals.astype(np.float32),
+        notes=notes,
     )
 
 
@@ -151,5 +153,5 @@ def seen_part(proxy: Proxy, view: View, margin: float, *, convex: bool) -> Proxy
     used, compact = np.unique(faces, return_inverse=True)
     return replace(
         proxy, positions=proxy.positions[used], normals=proxy.normals[used], domain=proxy.domain[used],
-        faces=compact.reshape(-1, 3).astype(np.uint32),
+        own_normals=proxy.own_normals[used], faces=compact.reshape(-1, 3).astype(np.uint32),
     )

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import drjit as dr
+import numpy as np
 
+from voldetail.backend import mitsuba
 from voldetail.detail import Detail
 from voldetail.noise import GrainShape, NoiseSettings, PlateShape, cell_value, number_of, relief_function, specks
+from voldetail.scene.pigment import coloured
 
 SOLID = "solid"
+QUANTILE_POINTS = 64
+"""A side of the square over which heights are counted."""
 
 
 def settings_of(detail: Detail) -> NoiseSettings:
@@ -30,20 +36,32 @@ def relief_at(detail: Detail, domain: tuple[Any, ...], scale: float = 1.0) -> An
     return _relief(detail, domain, scale)[0]
 
 
-def relief_and_albedo(detail: Detail, domain: tuple[Any, ...], scale: float = 1.0) -> tuple[Any, Any | None]:
-    """Return `relief_at` and the factor (1 + g (2 R - 1)) (1 + v (2 u - 1)) (1 + k t) on the albedo, or None for 1.
+def relief_quantiles(detail: Detail, side: float, shares: Sequence[float]) -> tuple[float, ...]:
+    """Return the heights R below which the ``shares`` of a square of ``side`` scene units lie, of the plane z = 0."""
+    float_type = mitsuba().Float
+    axis = (np.arange(QUANTILE_POINTS, dtype=np.float32) + 0.5) / QUANTILE_POINTS * side
+    x, y = np.meshgrid(axis, axis)
+    points = float_type(x.ravel()), float_type(y.ravel()), dr.zeros(float_type, x.size)
+    return tuple(float(v) for v in np.quantile(np.asarray(relief_at(detail, points)), shares))
 
-    g goes with the height R, v with the grain's own number u in [0, 1), k with specks t in (-1, 1).
+
+def relief_and_albedo(
+    detail: Detail, domain: tuple[Any, ...], scale: float = 1.0, *, spacing: float = 0.0, normals: tuple[Any, ...] | None = None
+) -> tuple[Any, Any | None]:
+    """Return `relief_at` and the factor on the albedo (scene.pigment): None for 1, an array, or three for colour.
+
+    ``spacing`` of the points in scene units, between which colour is averaged; ``normals`` of the bare shape in the domain.
     """
     relief, owner = _relief(detail, domain, scale)
     float_type: Any = type(domain[0])
     reflectance, points, seed = detail.reflectance, _points(detail, domain), _seed(detail, float_type)
-    patterns = []
+    patterns, number = [], None
     if reflectance.height_albedo != 0.0:
         patterns.append((reflectance.height_albedo, 2.0 * relief - 1.0))
-    if reflectance.cell_albedo != 0.0:
-        own = cell_value(points, seed, **_cells(detail, float_type, scale)) if owner is None else number_of(owner, float_type)
-        patterns.append((reflectance.cell_albedo, 2.0 * own - 1.0))
+    if reflectance.cell_albedo != 0.0 or (detail.colour is not None and detail.colour.driver == "cell"):
+        number = cell_value(points, seed, **_cells(detail, float_type, scale)) if owner is None else number_of(owner, float_type)
+        if reflectance.cell_albedo != 0.0:
+            patterns.append((reflectance.cell_albedo, 2.0 * number - 1.0))
     if reflectance.speckle != 0.0:
         size = dr.opaque(float_type, reflectance.speckle_scale / scale)
         patterns.append((reflectance.speckle, specks(tuple(v * size for v in points), seed)))
@@ -51,6 +69,8 @@ def relief_and_albedo(detail: Detail, domain: tuple[Any, ...], scale: float = 1.
     for strength, pattern in patterns:
         one = 1.0 + dr.opaque(float_type, strength) * pattern
         factor = one if factor is None else factor * one
+    if detail.colour is not None:
+        factor = coloured(detail, factor, points, relief, number, scale=scale, spacing=spacing, normals=normals)
     return relief, factor
 
 

@@ -213,6 +213,10 @@ class Setup(Record):
     look: Literal["surface", "medium"] = Field(
         default="surface", description="How a volume is seen: as the surface of solid matter, or as a medium, as clouds."
     )
+    colour: Literal["auto", "by-example", "height", "cell", "none"] = Field(
+        default="auto",
+        description="How the surface's colour is made: by example, with height, by the cell, none, or whichever is nearest.",
+    )
     fit: FitSettings = Field(default_factory=FitSettings, description="How the search is done.")
     seed: int = Field(default=0, ge=0, le=LARGEST_SEED, description="The root of every random number.")
     output: Path | None = Field(
@@ -228,6 +232,9 @@ class Setup(Record):
     def _volume(self) -> Setup:
         if self.mode == "displacement" and self.look == "medium":
             raise ValueError('the look "medium" needs the mode "volume"; a displaced surface is solid')
+        if self.colour not in ("auto", "none") and (self.medium or (self.mode == "volume" and self.colour != "by-example")):
+            allowed = "none" if self.medium else "by-example or none"
+            raise ValueError(f"the colour {self.colour!r} is for displaced surfaces; for this use {allowed}")
         if self.mode == "volume" and self.domain == "surface":
             raise ValueError('the mode "volume" needs noise that fills space: leave the domain "solid"')
         if self.light.behind and not self.medium:

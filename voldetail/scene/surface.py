@@ -13,6 +13,8 @@ from voldetail.backend import mitsuba
 from voldetail.detail import Detail
 from voldetail.scene.hypertexture import Hypertexture
 from voldetail.scene.isosurface import Isosurface
+from voldetail.scene.phong import VERTEX_ALBEDO
+from voldetail.scene.pigment import diffuse_of, factor_of, factors_of
 from voldetail.scene.proxy import Proxy
 from voldetail.scene.rays import rays_of
 from voldetail.scene.relief import relief_and_albedo
@@ -38,8 +40,13 @@ class TracedMesh:
         self.albedo: Any = None
         self.towards_viewer: Any = mi.Vector3f(0.0, 0.0, 1.0)
 
-    def _load(self, positions: Any, faces: NDArray[np.integer[Any]], normals: Any = None) -> None:
-        """Load the scene of a mesh: positions (and normals, else Mitsuba's own) as flat arrays, faces (F, 3)."""
+    def _load(
+        self, positions: Any, faces: NDArray[np.integer[Any]], normals: Any = None, diffuse: tuple[Any, ...] | None = None
+    ) -> None:
+        """Load the scene of a mesh: positions (and normals, else Mitsuba's own) as flat arrays, faces (F, 3).
+
+        diffuse: the vertices' albedo, where the BSDF takes it from them.
+        """
         mi = mitsuba()
         self._faces = tuple(mi.UInt32(np.ascontiguousarray(faces[:, corner])) for corner in range(3))
         properties = mi.Properties()
@@ -56,9 +63,15 @@ class TracedMesh:
             # After the positions, whose change makes Mitsuba compute its own.
             parameters["vertex_normals"] = normals
             parameters.update()
+        if diffuse is not None:
+            mesh.add_attribute(VERTEX_ALBEDO, 3, dr.ravel(mi.Color3f(*diffuse)))
         self.scene = mi.load_dict(
             {"type": "scene", "embree_use_robust_intersections": True, SHAPE: mesh, **self._emitters}
         )
+
+    def _diffuse(self, detail: Detail) -> tuple[Any, ...] | None:
+        """Return the albedo of the vertices where a BSDF is to take it from them."""
+        return None if self._bsdf is None or self.albedo is None else diffuse_of(detail, self.albedo)
 
     def rays(self, subsamples: int) -> Any:
         """Return the camera rays of a regular grid of samples, row by row."""
@@ -80,15 +93,13 @@ class TracedMesh:
 
     def _albedo_at(self, hit: Any, seen: Any) -> Any:
         """Return the albedo factor of the vertices, interpolated at the hits."""
-        if self.albedo is None:
-            return 1.0
-        float_type = type(self.albedo)
-        corners = [
-            dr.gather(float_type, self.albedo, dr.gather(type(face), face, hit.prim_index, seen), seen)
-            for face in self._faces
-        ]
+        corners = [dr.gather(type(face), face, hit.prim_index, seen) for face in self._faces]
         u, v = hit.uv.x, hit.uv.y
-        return corners[0] * (1.0 - u - v) + corners[1] * u + corners[2] * v
+        found = []
+        for factor in factors_of(self.albedo):
+            a, b, c = (dr.gather(type(factor), factor, corner, seen) for corner in corners)
+            found.append(a * (1.0 - u - v) + b * u + c * v)
+        return factor_of(found)
 
     def _offset(self, points: Any, geometric: Any) -> Any:
         # A hundredth of a pixel off the surface, and never less than single precision can tell apart.
@@ -137,19 +148,23 @@ class MeshSurface(TracedMesh):
         self._positions = mi.Point3f(np.ascontiguousarray(proxy.positions.T))
         self._normals = mi.Vector3f(np.ascontiguousarray(proxy.normals.T))
         self._domain = tuple(mi.Float(np.ascontiguousarray(proxy.domain[:, axis])) for axis in range(3))
+        # Of the bare shape, in the frame of the domain: what stands upright on which coordinate plane.
+        self._own_normals = tuple(mi.Float(np.ascontiguousarray(v)) for v in proxy.own_normals.T)
         self._parameters: Any = None
 
     def update(self, detail: Detail) -> None:
         """Displace the mesh by the relief of ``detail``."""
         mi = mitsuba()
-        relief, self.albedo = relief_and_albedo(detail, self._domain, self.scale)
+        relief, self.albedo = relief_and_albedo(
+            detail, self._domain, self.scale, spacing=self.view.pixel, normals=self._own_normals
+        )
         height = relief * dr.opaque(mi.Float, detail.relief.amplitude * self.scale)
         positions = dr.ravel(self._positions + height * self._normals)
         # Left unevaluated, the noise would be computed again by each consumer of the vertices.
         dr.eval(positions, self.albedo)
         if self._parameters is None:
             # Loaded with the first relief: a hierarchy over the bare proxy would be built for nothing.
-            self._load(positions, self.proxy.faces)
+            self._load(positions, self.proxy.faces, diffuse=self._diffuse(detail))
             self._parameters = mi.traverse(self.scene)
             self._key = next(key for key, _ in self._parameters if key.endswith("vertex_positions"))
         else:
@@ -167,6 +182,15 @@ class VolumeSurface(TracedMesh):
         super().__init__(view, one_sided_sky=one_sided_sky, bsdf=bsdf, emitters=emitters)
         mi = mitsuba()
         points = tuple(mi.Float(np.ascontiguousarray(surface.vertices[:, axis])) for axis in range(3))
-        _, self.albedo = relief_and_albedo(texture.detail, texture.shell.own(points), texture.scale)
+        detail = texture.detail
+        normals = None
+        if detail.colour is not None:
+            own = surface.normals @ texture.shell.turn.astype(np.float32)
+            normals = tuple(mi.Float(np.ascontiguousarray(own[:, axis])) for axis in range(3))
+        _, self.albedo = relief_and_albedo(
+            detail, texture.shell.own(points), texture.scale, spacing=view.pixel, normals=normals
+        )
         dr.eval(self.albedo)
-        self._load(mi.Float(surface.vertices.ravel()), surface.faces, mi.Float(surface.normals.ravel()))
+        self._load(
+            mi.Float(surface.vertices.ravel()), surface.faces, mi.Float(surface.normals.ravel()), self._diffuse(detail)
+        )
