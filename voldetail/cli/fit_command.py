@@ -77,6 +77,13 @@ def fit(
     resolution: Annotated[
         int | None, typer.Option(help="Its longest side when compared, in pixels.", rich_help_panel=WHERE)
     ] = None,
+    stationarize: Annotated[
+        bool | None,
+        typer.Option(
+            "--stationarize/--as-it-is", help="Make an even picture of it first, without stains and slow shading.",
+            rich_help_panel=WHERE,
+        ),
+    ] = None,
     folder: Annotated[
         _Text,
         typer.Option(
@@ -135,8 +142,8 @@ def fit(
         "--light": light, "--proxy": proxy, "--rotation": rotation, "--camera": camera, "--fov": fov,
         "--mask": mask, "--zone": zone, "--resolution": resolution, "--output": folder, "--domain": domain,
         "--amplitude": amplitude, "--specular": specular, "--solver": solver, "--metric": metric,
-        "--mode": mode, "--look": look, "--colour": colour, "--seed": seed, "--evaluations": evaluations,
-        "--time-limit": time_limit,
+        "--mode": mode, "--look": look, "--colour": colour, "--stationarize": stationarize, "--seed": seed,
+        "--evaluations": evaluations, "--time-limit": time_limit,
     }  # fmt: skip
     setup = read_setup(photo, options, override or [])
     place = FitFolder(output_folder(setup), setup)
@@ -148,9 +155,10 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
     """Fit the setup of ``place`` and fill it."""
     from voldetail.cli.progress import ProgressView
     from voldetail.fit.autolight import resolve_light
+    from voldetail.fit.evenness import warning
     from voldetail.fit.fitter import fit as search
     from voldetail.fit.session import Progress, State
-    from voldetail.fit.target import load_photo_of
+    from voldetail.fit.target import load_photo_of, make_target
 
     console = remarks()
     picture = load_photo_of(place.setup)
@@ -161,8 +169,14 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
     use_threads(threads)
     if guess is not None:
         output().print(guess.sentence, markup=False, soft_wrap=True)
+    if not place.setup.photo.stationarize:
+        uneven = warning(make_target(place.setup, picture).unevenness)
+        if uneven:
+            console.print(uneven, markup=False, soft_wrap=True)
 
     with ProgressView(console) as view:
+        if place.setup.photo.stationarize:
+            view.step("making an even picture of the photo")
 
         def on_progress(progress: Progress) -> None:
             place.begin(keep=start is not None)

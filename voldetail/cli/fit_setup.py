@@ -24,7 +24,7 @@ KEYS = {
     "--solver": "fit.solver", "--metric": "fit.metric", "--seed": "seed", "--evaluations": "fit.evaluations",
     "--time-limit": "fit.time_limit", "--domain": "domain", "--camera": "camera.kind",
     "--fov": "camera.field_of_view", "--specular": "fit.specular", "--output": "output",
-    "--mode": "mode", "--look": "look", "--colour": "colour",
+    "--mode": "mode", "--look": "look", "--colour": "colour", "--stationarize": "photo.stationarize",
 }  # fmt: skip
 
 

@@ -49,6 +49,10 @@ def signed(
         settings["amplitude_interval"] = {key: float(f"{value:.3g}") for key, value in found.heights.ends.items()}
     if found.told:
         settings["medium_intervals"] = {t.key: [float(f"{v:.3g}") for v in (t.low, t.high)] for t in found.told}
+    if target.unevenness is not None:
+        settings["unevenness"] = float(f"{target.unevenness:.3g}")
+    if setup.photo.stationarize:
+        settings["stationarized"] = True
     if found.colour is not None:
         far: dict[str, JsonValue] = {driver: float(f"{value:.4g}") for driver, value in found.colour.distances.items()}
         settings["colour"] = {"chosen": found.colour.chosen, "distances": far}

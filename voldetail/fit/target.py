@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 from voldetail.errors import InputError
-from voldetail.fit.zone import check_zone, default_zone
+from voldetail.fit.evenness import evened, unevenness
+from voldetail.fit.zone import around, check_zone, default_zone
 from voldetail.image import Photo, load_mask, load_photo, luminance, resize, resize_mask
 from voldetail.metric import Descriptor, describe, distance
 from voldetail.scene.build import faces_camera
@@ -22,6 +23,9 @@ SLOW_SHADING = 0.12
 """Blur, in zone widths, that separates a near light's fall-off from the texture; tuned on the flash photographs of
 ../shared/data, where the main wavelength is a tenth of this."""
 
+REACH = 3.0
+"""How many times the zone's side the part of the photo is long that an even picture of the zone is made of."""
+
 BLACK = 1e-6
 """Mean luminance of a photo below which it has no colour; a hundredth of the darkest 8-bit value but black."""
 
@@ -32,7 +36,8 @@ class Target:
 
     white: the luminance at which the photo burns out; renderings are clipped there, as the camera did.
     pixels (H, W, 3) and luminance (H, W): the zone, linear, at working resolution. mask (H, W). shape: rows and columns
-    of the whole photo; zone in its pixels. photo_halves: distance between the two halves of the zone.
+    of the whole photo; zone in its pixels. photo_halves: distance between the two halves of the zone. unevenness: of the photo
+    (fit.evenness), before anything was evened; None where it means nothing.
     """
 
     photo: Photo
@@ -46,6 +51,7 @@ class Target:
     descriptor: Descriptor
     photo_halves: float | None
     white: float
+    unevenness: float | None = None
 
     def reduced(self, metric: str, size: tuple[int, int]) -> Target:
         """Return the same target at fewer pixels (rows, columns), for the coarse pass."""
@@ -97,6 +103,15 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
     if lamp.position is not None and faces_camera(setup):
         view = view_of(setup.camera, (rows, columns), zone, setup.photo.resolution)
         pixels = _with_falloff_of(lamp, pixels, used, view)
+    uneven = unevenness(pixels, used) if faces_camera(setup) and not setup.medium else None
+    if setup.photo.stationarize:
+        source, seen = pixels, used
+        if setup.photo.zone is None and lamp.position is None:
+            # A zone that the user drew says what is meant; else there is more of the surface beside it.
+            x, y, w, h = around(zone, (rows, columns), REACH)
+            whole = (round(h * factor), round(w * factor))
+            source, seen = resize(photo.pixels[y : y + h, x : x + w], whole), resize_mask(mask[y : y + h, x : x + w], whole)
+        pixels, used = evened(source, seen, size, setup.seed), np.ones_like(used)
     light = luminance(pixels)
     mean = pixels[used].mean(axis=0).astype(np.float64)
     brightness = float(luminance(mean[None, None, :].astype(np.float32))[0, 0])
@@ -106,7 +121,7 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
         photo=photo, pixels=pixels, luminance=light, mask=used, shape=(rows, columns), zone=zone,
         lamp=lamp, tint=(float(tint[0]), float(tint[1]), float(tint[2])),
         descriptor=descriptor, photo_halves=halves_apart(light, used, setup.fit.metric),
-        white=max(1.0, float(light.max())),
+        white=max(1.0, float(light.max())), unevenness=uneven,
     )
 
 

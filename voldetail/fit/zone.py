@@ -84,3 +84,13 @@ def main_wavelength(luminance: NDArray[np.float32]) -> float:
         return FEATURE_PIXELS
     mean = float(np.sum(power[used] * np.log(1.0 / frequency[used])) / power[used].sum())
     return float(np.exp(mean)) * step
+
+
+def around(zone: Zone, shape: tuple[int, int], reach: float) -> Zone:
+    """Return the part of a photo of ``shape`` (rows, columns) about ``zone`` that is ``reach`` times as long, or ends with it."""
+    x, y, w, h = zone
+    rows, columns = shape
+    wide, high = min(columns, round(w * reach)), min(rows, round(h * reach))
+    left, top = (min(max(0, at + side // 2 - new // 2), most - new)
+                 for at, side, new, most in ((x, w, wide, columns), (y, h, high, rows)))
+    return left, top, wide, high

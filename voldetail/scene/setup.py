@@ -60,6 +60,9 @@ class PhotoSetup(Record):
         json_schema_extra={"unit": "pixels"},
         description="The longest side of the zone after resampling, in pixels.",
     )
+    stationarize: bool = Field(
+        default=False, description="Whether an even picture is made of it first, without stains and slow shading."
+    )
 
     @property
     def skimage(self) -> str | None:
@@ -230,6 +233,8 @@ class Setup(Record):
 
     @model_validator(mode="after")
     def _volume(self) -> Setup:
+        if self.photo.stationarize and (self.proxy.kind != "plane" or self.medium):
+            raise ValueError("an even picture can be made of a flat surface alone: leave stationarize out, or the proxy a plane")
         if self.mode == "displacement" and self.look == "medium":
             raise ValueError('the look "medium" needs the mode "volume"; a displaced surface is solid')
         if self.colour not in ("auto", "none") and (self.medium or (self.mode == "volume" and self.colour != "by-example")):
