@@ -11,6 +11,7 @@ from rich.table import Table
 
 from voldetail.cli.console import output, remarks
 from voldetail.cli.outputs import check_file
+from voldetail.cli.photo_argument import photo_path
 from voldetail.cli.threads import use_threads
 from voldetail.errors import InputError
 
@@ -27,7 +28,7 @@ MEASURE_HELP = (
 MEASURED_SIDE = 1024  # pixels: a larger photo is measured smaller, in seconds instead of minutes
 UNITS = {"histogram": "L*a*b*", "steerable": "L*a*b*"}
 
-_Photo = Annotated[Path, typer.Argument(help="A photo of a texture.")]
+_Photo = Annotated[str, typer.Argument(help="A photo of a texture, or skimage:gravel, :grass, :brick.")]
 _Mask = Annotated[Path | None, typer.Option(help="A picture of the photo's size: white is used.")]
 _Pairs = list[str] | None
 
@@ -143,13 +144,13 @@ def _pair(text: str, option: str) -> tuple[Path, Path]:
     return Path(first), Path(second)
 
 
-def _read(photo: Path, mask: Path | None) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+def _read(photo: str, mask: Path | None) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     """The photo (H, W, 3), linear, and what of it may be used (H, W)."""
     import numpy as np
 
     from voldetail.image import load_mask, load_photo
 
-    found = load_photo(photo)
+    found = load_photo(photo_path(photo))
     use = np.ones(found.pixels.shape[:2], bool) if mask is None else load_mask(mask, found.pixels.shape[:2])
     if found.opaque is not None:
         use = use & found.opaque
