@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from voldetail.detail import Detail, DetailColour, Reflectance
 from voldetail.errors import InputError
 from voldetail.fit.albedo import albedo_apart
-from voldetail.fit.objective import Objective
+from voldetail.fit.objective import COVERED, Objective
 from voldetail.image import to_linear, to_srgb
 from voldetail.metric import Descriptor, describe, distance
 from voldetail.render import components
@@ -95,54 +95,70 @@ def choose_colour(
     drivers = DRIVERS[colour]
     if volume:
         drivers = ("noise",) if drivers == ("noise",) and detail.medium is None else ()
-    plain = _colours(objective, detail) if not volume else np.zeros((*target.mask.shape, 3), np.float32)
+    if colour == "auto" and is_grey(target.pixels, target.mask):
+        drivers = ()  # what brightness alone tells, the relief and its patterns of albedo were searched for
+    plain = np.zeros((*target.mask.shape, 3), np.float32) if volume else _colours(objective, detail)[0]
     if not drivers:
         return ColourChoice(detail, "none", {}, plain)
-    shadings = [objective.evaluate(detail, seed).picture for seed in shading_seeds]
-    tries = {driver: _driven(objective, detail, driver, shadings, name) for driver in drivers}
+    evaluations = [objective.evaluate(detail, seed) for seed in shading_seeds]
+    seen = np.logical_and.reduce([target.mask, *(e.mask for e in evaluations)])
+    if not seen.any():
+        return ColourChoice(detail, "none", {}, plain)
+    learnt = _learnt(objective, [e.picture for e in evaluations], seen, detail.seed, name)
+    tries = {driver: _driven(objective, detail, driver, learnt) for driver in drivers}
     if volume or len(drivers) == 1:
         driver, made = next(iter(tries.items()))
-        return ColourChoice(made, NAMES[driver], {}, plain if volume else _colours(objective, made))
+        return ColourChoice(made, NAMES[driver], {}, plain if volume else _colours(objective, made)[0])
     if colour == "auto":
         tries = {"none": detail, **tries}
     try:
         judge = ColourDistance(target.pixels, target.mask, target.descriptor.metric)
-    except InputError:
+        found = {driver: _far(objective, made, judge, seeds) for driver, made in tries.items()}
+    except InputError:  # too little is seen of it to be compared
         return ColourChoice(detail, "none", {}, plain)
-    found = {driver: _far(objective, made, judge, seeds) for driver, made in tries.items()}
     best = min(found, key=lambda driver: found[driver])
-    return ColourChoice(tries[best], NAMES.get(best, "none"), found, _colours(objective, tries[best]))
+    return ColourChoice(tries[best], NAMES.get(best, "none"), found, _colours(objective, tries[best])[0])
+
+
+def is_grey(pixels: NDArray[np.float32], mask: NDArray[np.bool_]) -> bool:
+    """Return whether a photo (H, W, 3) has one channel that varies, but for what compression adds."""
+    deviations = np.sqrt(np.maximum(np.linalg.eigvalsh(np.cov(to_srgb(pixels)[mask].astype(np.float64).T)), 0.0))
+    return bool(deviations[1] < GREY * deviations[2])
 
 
 def _far(objective: Objective, detail: Detail, judge: ColourDistance, seeds: Sequence[int]) -> float:
-    pictures = (_colours(objective, detail.model_copy(update={"seed": seed})) for seed in seeds)
-    return float(np.mean([judge(p) for p in pictures]))
+    found = []
+    for seed in seeds:
+        colours, covered = _colours(objective, detail.model_copy(update={"seed": seed}))
+        found.append(judge(colours, objective.target.mask & covered))
+    return float(np.mean(found))
 
 
-def _driven(
-    objective: Objective, detail: Detail, driver: str, shadings: Sequence[NDArray[np.float32]], name: str
-) -> Detail:
-    """Return ``detail`` with the photo's colour moved by ``driver``."""
-    target = objective.target
-    albedo = albedo_apart(target.pixels, target.mask, shadings)
-    texture = analyse(albedo, mask=target.mask, seed=detail.seed, name=name)
-    mean = picture(texture, (MEAN_SIDE, MEAN_SIDE)).reshape(-1, 3).mean(axis=0)
-    gain = tuple(float(1.0 / max(v, 1e-4)) for v in mean)
+def _learnt(
+    objective: Objective, shadings: Sequence[NDArray[np.float32]], seen: NDArray[np.bool_], seed: int, name: str
+) -> DetailColour:
+    """Return the colour that the photo has by example, once the ``shadings`` are taken out of it."""
+    albedo = albedo_apart(objective.target.pixels, seen, shadings)
+    texture = analyse(albedo, mask=seen, seed=seed, name=name)
+    r, g, b = (1.0 / max(float(v), 1e-4) for v in picture(texture, (MEAN_SIDE, MEAN_SIDE)).reshape(-1, 3).mean(axis=0))
+    return DetailColour(texels_per_unit=1.0 / objective.surface.view.pixel, gain=(r, g, b), texture=texture)
+
+
+def _driven(objective: Objective, detail: Detail, driver: str, learnt: DetailColour) -> Detail:
+    """Return ``detail`` with the ``learnt`` colour moved by ``driver``."""
     heights: tuple[float, ...] = ()
     if driver in ("height", "hollow"):
-        side = objective.surface.view.pixel * max(target.mask.shape)
+        side = objective.surface.view.pixel * max(objective.target.mask.shape)
         heights = relief_quantiles(detail, side, tuple(CURVE_PROBABILITIES.tolist()))
-    colour = DetailColour(
-        driver=driver, texels_per_unit=1.0 / objective.surface.view.pixel, gain=gain, heights=heights, texture=texture,  # type: ignore[arg-type]
-    )
+    colour = learnt.model_copy(update={"driver": driver, "heights": heights})
     return detail.model_copy(update={"colour": colour})
 
 
-def _colours(objective: Objective, detail: Detail) -> NDArray[np.float32]:
-    """Return the picture (H, W, 3) of ``detail`` under the photo's light, clipped where the photo burns out."""
+def _colours(objective: Objective, detail: Detail) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+    """Return the picture (H, W, 3) of ``detail`` under the photo's light, clipped where that burns out, and where it is whole."""
     reflectance: Reflectance = detail.reflectance
     objective.surface.update(detail)
     parts = components(
         objective.surface, objective.target.lamp, subsamples=objective.subsamples, shininess=(reflectance.shininess,)
     )
-    return np.minimum(parts.colour(reflectance), objective.target.white)
+    return np.minimum(parts.colour(reflectance), objective.target.white), parts.covered > COVERED
