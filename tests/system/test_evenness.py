@@ -14,6 +14,7 @@ from voldetail.fit.evenness import UNEVEN, evened, unevenness, warning
 from voldetail.fit.target import make_target
 from voldetail.fit.zone import around
 from voldetail.image import Photo, luminance, save_image
+from voldetail.report.facts import EVEN_ENOUGH
 from voldetail.scene.setup import Light, PhotoSetup, Setup
 from voldetail.scene.setup_file import setup_from
 
@@ -52,6 +53,10 @@ def test_what_is_masked_does_not_count() -> None:
     pixels[:40, :40] = 0.9
     mask[:40, :40] = False
     assert value(pixels, mask) < 0.2 < value(pixels)
+
+
+def test_the_report_names_the_same_limit() -> None:
+    assert EVEN_ENOUGH == UNEVEN
 
 
 def test_one_colour_has_no_evenness() -> None:

@@ -128,7 +128,7 @@ def test_albedo_goes_with_height_and_grain(fast: bool) -> None:
 def step(monkeypatch: pytest.MonkeyPatch) -> None:
     """Relief 1 left of x = 0 and 0 right of it, instead of noise."""
 
-    def relief(what: Detail, domain: tuple[Any, ...], scale: float = 1.0) -> Any:
+    def relief(what: Detail, domain: tuple[Any, ...], scale: float = 1.0, **options: Any) -> Any:
         return mitsuba().Float(np.where(np.array(domain[0]) < 0, 1.0, 0.0).astype(np.float32)), None
 
     monkeypatch.setattr(heightfield, "relief_and_albedo", relief)

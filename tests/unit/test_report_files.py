@@ -16,6 +16,7 @@ from PIL import Image
 
 from voldetail.apply.gallery import Gallery
 from voldetail.detail import Detail, NoiseFloor
+from voldetail.fit.colour import ColourChoice
 from voldetail.fit.fitter import FitResult
 from voldetail.fit.interval import AmplitudeInterval
 from voldetail.fit.told import Told
@@ -39,7 +40,7 @@ def result(rows: int = 48, columns: int = 64, **changes: Any) -> FitResult:
         photo=Photo(pixels, "ab" * 32, ("rotated by EXIF",)),
         mask=np.ones((rows, columns), bool),
         shape=(480, 640),
-        zone=(10, 20, 128, 96),
+        zone=(10, 20, 128, 96), unevenness=0.62,
     )
     made = FitResult(
         detail=Detail(name="wall", noise_floor=NoiseFloor(other_seed=1.25, photo_halves=1.5)),
@@ -246,3 +247,13 @@ def test_a_medium_is_told_number_by_number() -> None:
     assert dict(facts(result(told=told)))["Medium"] == words
     assert "Amplitude" not in dict(facts(result(told=told)))
     assert medium_words(result(told=told[2:])) == "none of its numbers is told"
+
+
+def test_colour_and_evenness_are_told() -> None:
+    told = dict(facts(result()))
+    assert told["Evenness"] == "unevenness 0.62 (0 is even, up to 0.45 even enough)"
+    assert "Colour" not in told
+    choice = ColourChoice(Detail(), "none", {"none": 1.5, "noise": 1.75}, picture(4, 4))
+    assert dict(facts(result(colour=choice)))["Colour"] == "one tint; distances of colours: one tint 1.5, by example 1.75"
+    even = setup_from({"photo": {"path": "wall.jpg", "stationarize": True}, "light": "135,45"})
+    assert dict(facts(result(setup=even)))["Evenness"].endswith("an even picture was made of it and fitted")

@@ -15,6 +15,10 @@ _ANGULAR = 0.5  # facets above which the flat faces are what one sees
 MEDIUM_HAS_NONE = ("specular", "shininess", "height_albedo", "cell_albedo", "speckle", "speckle_scale")
 """Numbers of the reflectance that a medium has no use for."""
 
+_COLOURED = {
+    "noise": "coloured by example", "height": "coloured with its height", "hollow": "coloured with its hollows",
+    "cell": "coloured by the cell",
+}
 _STRETCHED = 1.1  # a ratio below this cannot be told from round cells by eye
 
 
@@ -55,6 +59,8 @@ def summary(detail: Detail) -> str:
     if detail.medium is not None:
         parts.append(f"soft over {detail.medium.thickness:.2g}, with an extinction of {detail.medium.extinction:.2g}")
         return ", ".join(parts) + "."
+    if detail.colour is not None:
+        parts.append(_COLOURED[detail.colour.driver])
     glossy = detail.reflectance.specular > _GLOSSY
     parts.append(f"glossy (shininess {detail.reflectance.shininess:.2g})" if glossy else "matte")
     return ", ".join(parts) + "."

@@ -123,7 +123,7 @@ def choose_colour(
 def is_grey(pixels: NDArray[np.float32], mask: NDArray[np.bool_]) -> bool:
     """Return whether a photo (H, W, 3) has one channel that varies, but for what compression adds."""
     deviations = np.sqrt(np.maximum(np.linalg.eigvalsh(np.cov(to_srgb(pixels)[mask].astype(np.float64).T)), 0.0))
-    return bool(deviations[1] < GREY * deviations[2])
+    return bool(deviations[1] <= GREY * deviations[2])
 
 
 def _far(objective: Objective, detail: Detail, judge: ColourDistance, seeds: Sequence[int]) -> float:

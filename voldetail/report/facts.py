@@ -56,6 +56,10 @@ def duration(seconds: float) -> str:
     return f"{whole // 3600} h {whole // 60 % 60:02d} min"
 
 
+EVEN_ENOUGH = 0.45
+"""As in a fit's warning; a report knows nothing of fits, and a test holds the two together."""
+
+
 def facts(result: FitResult) -> list[tuple[str, str]]:
     """Label and text of each fact about the photo and the search, in reading order."""
     setup, target = result.setup, result.target
@@ -69,11 +73,13 @@ def facts(result: FitResult) -> list[tuple[str, str]]:
     return [
         ("Photo", f"{setup.photo.name}, {columns} x {rows} pixels{notes}"),
         ("Zone", f"{width} x {height} pixels at {x}, {y} from the top left; compared at {shown}{masked}"),
+        *([("Evenness", evenness_words(result))] if target.unevenness is not None else []),
         ("Light", light_words(setup.light)),
         ("Proxy", _proxy(setup)),
         ("Search", f"{result.evaluations} pictures compared in {duration(result.seconds)}{rate}"),
         ("Solver", f"{setup.fit.solver}, metric {setup.fit.metric}, seed {setup.seed}; {result.status}"),
         ("Distance", distance_words(result)),
+        *([("Colour", colour_words(result))] if result.colour is not None else []),
         *([("Medium", medium_words(result))] if result.told else [("Amplitude", amplitude_words(result))]),
     ]
 
@@ -109,6 +115,30 @@ def amplitude_words(result: FitResult) -> str:
     if (heights.low_any, heights.high_any) != (heights.low, heights.high):
         text += f", {_span(heights.low_any, heights.high_any, heights)} if the light were up to 10 degrees lower or higher"
     return text
+
+
+COLOUR_WORDS = {
+    "none": "one tint", "noise": "by example", "height": "with the relief's height", "hollow": "with its hollows",
+    "cell": "by the cell",
+}
+
+
+def colour_words(result: FitResult) -> str:
+    """How the surface is coloured, and how far from the photo each try was."""
+    choice = result.colour
+    assert choice is not None
+    colour = choice.detail.colour
+    text = COLOUR_WORDS["none" if colour is None else colour.driver]
+    if choice.distances:
+        text += "; distances of colours: " + ", ".join(f"{COLOUR_WORDS[k]} {number(v)}" for k, v in choice.distances.items())
+    return text
+
+
+def evenness_words(result: FitResult) -> str:
+    """How uneven the photo is, and whether an even picture was made of it."""
+    assert result.target.unevenness is not None
+    made = "; an even picture was made of it and fitted" if result.setup.photo.stationarize else ""
+    return f"unevenness {number(result.target.unevenness)} (0 is even, up to {EVEN_ENOUGH:g} even enough){made}"
 
 
 def medium_words(result: FitResult) -> str:
