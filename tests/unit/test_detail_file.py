@@ -124,7 +124,7 @@ def changed(key: str, value: Any) -> str:
         ("noise", 3, "noise = 3 is of the wrong kind"),
         ("relief", KeyError, "relief is missing"),
         ("relief.amplitude", -0.1, "allowed: 0 to 1 scene units"),
-        ("colour", 1, "no setting colour"),
+        ("paint", 1, "no setting paint"),
         ("seed", -1, "seed = -1 is out of range"),
         ("seed", 2**32, "out of range"),
         ("provenance.created", "yesterday", "not an ISO 8601 date"),

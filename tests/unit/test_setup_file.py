@@ -122,7 +122,7 @@ def test_an_override_cannot_smuggle_in_another_key() -> None:
             "photo.resolutoin=5",
             "'photo.resolutoin=5': there is no setting photo.resolutoin; the nearest one is resolution",
         ),
-        ("colour=1", "no setting colour"),
+        ("paint=1", "no setting paint"),
         (
             "photo.resolution=5000",
             "5000 is out of range; allowed: a whole number at least 64 and at most 1024 pixels",
