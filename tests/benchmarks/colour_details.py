@@ -65,7 +65,10 @@ def run(photograph: Photograph, output: Path | None) -> tuple[dict[str, Any], li
 def table(records: list[dict[str, Any]]) -> str:
     """One row a photograph."""
     names = ("none", "noise", "height", "hollow", "cell")
-    rows = [[r["photo"], r["chosen"], f"{r['halves']:.2f}", *(f"{r['distances'][n]:.2f}" for n in names)] for r in records]
+    rows = []
+    for r in records:
+        far = (f"{r['distances'][n]:.2f}" if n in r["distances"] else "grey" for n in names)
+        rows.append([r["photo"], r["chosen"], f"{r['halves']:.2f}", *far])
     return markdown(["photo", "chosen", "its halves", "one tint", "by example", "height", "hollows", "cell"], rows)
 
 
