@@ -10,7 +10,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
+
+from voldetail.detail.provenance import Record
 
 COLOUR_VERSION: Literal[1] = 1
 CURVE_SAMPLES = 10
@@ -26,13 +28,7 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 Weight = Annotated[float, Field(ge=0, le=1e4, allow_inf_nan=False)]
 
 
-class ColourRecord(BaseModel):
-    """Base of these records: frozen, no unknown keys, finite numbers only."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class Lobe(ColourRecord):
+class Lobe(Record):
     """One Gaussian pair in the power spectrum of an anisotropic noise: a Gabor kernel's, at plus and minus its frequency.
 
     Its ellipse lies along and across its frequency: fibres and ripples have spectra thin one way, which a few ellipses
@@ -50,7 +46,7 @@ class Lobe(ColourRecord):
     variance: float = Field(ge=0, le=1e8, description="The variance that the lobe adds to the noise.")
 
 
-class ColourChannel(ColourRecord):
+class ColourChannel(Record):
     """One decorrelated channel: a noise of unit or any deviation, and the curve that gives it the photo's histogram.
 
     weights: w_i of the wavelet bands, the finest (wavelengths of 2 to 4 texels) first, 1 to 14 of them.
@@ -74,7 +70,7 @@ class ColourChannel(ColourRecord):
         return self
 
 
-class ColourTexture(ColourRecord):
+class ColourTexture(Record):
     """A procedural colour texture: three decorrelated channels (one for grey) and where they came from."""
 
     version: Literal[1] = Field(default=COLOUR_VERSION, description="The version of the record.")
@@ -102,7 +98,7 @@ class ColourTexture(ColourRecord):
         return self
 
 
-class DetailColour(ColourRecord):
+class DetailColour(Record):
     """The colour of a detail's surface: a factor on what it reflects of the sky and the light's beam.
 
         Kd tint f(x),    f(x) = gain colour(texels_per_unit x)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from voldetail.backend import mitsuba
-from voldetail.detail import Detail, bounds, rounded
+from voldetail.detail import bounds, rounded
 from voldetail.errors import InputError, VoldetailError
 from voldetail.fit.autolight import resolve_light
 from voldetail.fit.colour import ColourChoice, choose_colour
@@ -21,11 +20,12 @@ from voldetail.fit.plans import Stage, default_plan, paper_plan
 from voldetail.fit.provenance import Findings, signed
 from voldetail.fit.ranges import MEDIUM_ROUGHNESS, ROUGHNESS, SOLID_ROUGHNESS
 from voldetail.fit.reflectance import colours
+from voldetail.fit.result import FitResult
 from voldetail.fit.session import Progress, Session, State, Stopped, derived_seed
 from voldetail.fit.space import Space
 from voldetail.fit.target import Target, load_photo_of, make_target
 from voldetail.fit.told import Told, told_of_medium
-from voldetail.image import Photo, luminance
+from voldetail.image import Photo
 from voldetail.metric import METRICS
 from voldetail.metric.anisotropy import anisotropy
 from voldetail.scene.build import build, edge_of
@@ -55,45 +55,6 @@ INTERVAL_SEEDS = 2
 FINALISTS = 3
 DETAIL_SEEDS = 4
 """Seeds tried for the finished detail: one noise field of a few hundred cells can by chance be an odd one."""
-
-
-@dataclass(frozen=True)
-class FitResult:
-    """What a fit found. status says in a sentence why it ended; trace is (evaluations, best distance) as it fell.
-
-    setup: the one that was fitted, with the direction found where its light was "auto", and then light_guess.
-    heights: the amplitudes that fit about as well; None where the user gave the amplitude or stopped the fit.
-    colour: what was chosen for the colour, and how far each try was from the photo.
-    told: for a medium, what the photo tells of each of its numbers; empty for other details, and where the fit was stopped.
-    picture (H, W): its luminance. covered (H, W): the share of each pixel that is filled; background: what shows through.
-    """
-
-    detail: Detail
-    setup: Setup
-    target: Target
-    picture: NDArray[np.float32]
-    covered: NDArray[np.float32]
-    background: tuple[float, float, float]
-    distance: float
-    evaluations: int
-    seconds: float
-    status: str
-    trace: tuple[tuple[int, float], ...]
-    interrupted: bool
-    light_guess: LightGuess | None = None
-    heights: AmplitudeInterval | None = None
-    told: tuple[Told, ...] = ()
-    colour: ColourChoice | None = None
-
-    @property
-    def coloured(self) -> NDArray[np.float32]:
-        """The picture (H, W, 3) in the photo's colours."""
-        if self.colour is not None and self.detail.colour is not None and self.detail.mode == "displacement":
-            return self.colour.picture
-        behind = np.asarray(self.background, dtype=np.float32)
-        through = (1.0 - self.covered)[..., None] * behind
-        matt = np.maximum(self.picture - luminance(through), 0.0)[..., None]
-        return np.asarray(matt * np.asarray(self.detail.reflectance.tint, dtype=np.float32) + through, dtype=np.float32)
 
 
 def fit(

@@ -16,8 +16,8 @@ import numpy as np
 from pydantic import Field, JsonValue, ValidationError
 
 from voldetail import __version__
+from voldetail.detail.provenance import Record, Sha256
 from voldetail.detail.reading import read_small_text
-from voldetail.detail.record import Record, Sha256
 from voldetail.detail.refusal import printable, refusal, shown
 from voldetail.errors import InputError
 from voldetail.files import sha256, write_text
