@@ -9,7 +9,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from voldetail.apply.volumes import Tell, place, quiet, solid_surface, traced_medium
+from voldetail.apply.volumes import Progress, Tell, place, quiet, solid_surface, traced_medium, unseen
 from voldetail.detail import Detail
 from voldetail.errors import InputError
 from voldetail.render import components, traced_picture
@@ -45,6 +45,7 @@ def render(
     scale: float = 1.0, size: tuple[int, int] = (640, 480), camera: CameraSetup | None = None,
     rotation: tuple[float, float, float] = (0.0, 0.0, 0.0), subsamples: int = 2, samples: int = 64,
     shading: Shading = "phong", background: float | Colour = 0.0, edge: float = PIXELS_AN_EDGE, tell: Tell = quiet,
+    on_progress: Progress = unseen,
 ) -> Picture:
     """Return a linear picture (rows, columns, 3) of ``detail`` on ``mesh``: a kind of proxy or a mesh file.
 
@@ -55,7 +56,8 @@ def render(
     the radiance where there is no surface, one number or a colour; ``edge`` the length of the mesh's edges in pixels.
 
     A volume needs a closed mesh; its solid surface is seen as any other, a medium is marched under a light with the shading
-    "phong" and path-traced with all its scattering else. ``tell`` then gets a sentence with the memory and time it takes.
+    "phong" and path-traced with all its scattering else. ``tell`` then gets a sentence with the memory and time it takes,
+    ``on_progress`` how many of a large surface's blocks are done, and of how many.
     Raises InputError for a mesh or environment that cannot be used.
     """
     if envmap is not None and light is not None:
@@ -79,7 +81,7 @@ def render(
         # A sky as bright as the ambient term makes it on a matt surface.
         r = detail.reflectance
         emitters = emitters_of(lamp, r.ambient / r.diffuse if r.diffuse > 1e-6 else 0.0)
-    surface = _surface(detail, mesh, view, proxy, whole, scale, edge, tell, _bsdf(detail, shading), emitters)
+    surface = _surface(detail, mesh, view, proxy, whole, scale, edge, tell, _bsdf(detail, shading), emitters, on_progress)
     if emitters is not None:
         return traced_picture(surface, samples, background)
     return _lit(detail, surface, lamp, subsamples, background)
@@ -143,14 +145,14 @@ def _proxy(mesh: str | Path, view: View, rotation: tuple[float, float, float]) -
 
 def _surface(
     detail: Detail, mesh: str | Path, view: View, proxy: ProxySetup, whole_plane: bool, scale: float, edge: float, tell: Tell,
-    bsdf: dict[str, Any] | None = None, emitters: dict[str, Any] | None = None,
+    bsdf: dict[str, Any] | None = None, emitters: dict[str, Any] | None = None, on_progress: Progress = unseen,
 ) -> TracedMesh:
     """Return the surface of ``detail``: the displaced proxy, or that of solid matter."""
     if detail.mode == "volume":
         # Under perspective a plane's window is not all that is seen of it.
         filling = whole_plane and not view.perspective
         volume = place(detail, proxy, view, scale=scale, whole_plane=filling, edge=edge * view.pixel, tell=tell)
-        return solid_surface(detail, volume, bsdf=bsdf, emitters=emitters)
+        return solid_surface(detail, volume, bsdf=bsdf, emitters=emitters, on_progress=on_progress)
     made = make_proxy(proxy, edge * view.pixel, detail.noise.domain)
     surface = MeshSurface(made, view, scale=scale, bsdf=bsdf, emitters=emitters, one_sided_sky=str(mesh) == "plane")
     surface.update(detail)

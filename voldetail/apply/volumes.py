@@ -36,6 +36,10 @@ def quiet(sentence: str) -> None:
     """Take no notice of what is told."""
 
 
+def unseen(done: int, total: int) -> None:
+    """Take no notice of how much is done."""
+
+
 def place(
     detail: Detail, proxy: ProxySetup, view: View, *, scale: float = 1.0, whole_plane: bool = False, edge: float | None = None,
     whole_grid: bool = False, tell: Tell = quiet,
@@ -85,7 +89,7 @@ def _sentence(plan: ShellPlan, byte_count: int, coarser: float) -> str:
 
 def solid_surface(
     detail: Detail, volume: Volume, *, bsdf: dict[str, Any] | None, emitters: dict[str, Any] | None = None,
-    on_progress: Progress = lambda done, total: None,
+    on_progress: Progress = unseen,
 ) -> VolumeSurface:
     """Return the surface of the solid ``detail`` on ``volume`` in a Mitsuba scene.
 

@@ -87,8 +87,9 @@ def render(
     }  # fmt: skip
     shape = shape_of(shape)
     use_threads(context.obj)
-    with remarks().status(f"rendering {shape}"):
+    with remarks().status(f"rendering {shape}") as status:
         options["tell"] = tell
+        options["on_progress"] = lambda done, total: status.update(f"rendering {shape}: {done} of {total} blocks of its surface")
         picture = picture_of(record, shape, **options)
     save_image(out, picture)
     output().print(f"{out}  {picture.shape[1]} x {picture.shape[0]} pixels", markup=False, soft_wrap=True)
