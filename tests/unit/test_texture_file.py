@@ -72,6 +72,7 @@ def test_any_texture_comes_back_to_seven_digits(weights: list[float], curve: lis
         (changed(channels=[]), ["channels"]),
         (with_channel(weights=[0.5, -0.25]), ["channels[0].weights[1] = -0.25", "out of range"]),
         (with_channel(weights=None), ["channels[0].weights is missing"]),
+        (with_channel(weights=[1.0, -0.5]), ["channels[0].weights[1] = -0.5", "at least 0 and at most 10000"]),
         (with_channel(weights=[]), ["either the weights of bands or lobes"]),
         (with_channel(weights=[1.0] * 15), ["channels[0].weights", "wrong length"]),
         (with_channel(curve=CURVE[::-1]), ["the curve decreases"]),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import types
-from typing import Any, Literal, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
@@ -42,11 +42,13 @@ def dotted(loc: tuple[int | str, ...]) -> str:
 
 
 def record_in(annotation: Any) -> type[BaseModel] | None:
-    """The record that a field holds (also where it may be None), or None where it holds something else."""
+    """The record that a field holds (also where it may be None, or a list of them), or None where it holds something else."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
     if get_origin(annotation) in (Union, types.UnionType):
         return next((m for m in map(record_in, get_args(annotation)) if m), None)
+    if get_origin(annotation) is tuple:
+        return record_in(get_args(annotation)[0])
     return None
 
 
@@ -57,7 +59,9 @@ def _find(
     here: type[BaseModel] | None = model
     owner, field = here, None
     for part in loc:
-        if isinstance(part, int) or here is None:
+        if isinstance(part, int):
+            continue  # one of several of the kind that the field holds
+        if here is None:
             break
         owner, field = here, here.model_fields.get(part)
         here = record_in(field.annotation) if field else None
@@ -76,9 +80,13 @@ def _allowed(field: FieldInfo | None) -> str:
     if get_origin(kind) is Literal:
         return "one of " + ", ".join(map(str, get_args(kind)))
     unit = f" {extra['unit']}" if "unit" in extra else ""
+    limits = list(field.metadata)
+    if get_origin(kind) is Annotated:  # of each number in a list
+        kind, *own = get_args(kind)
+        limits = [m for one in own for m in getattr(one, "metadata", [one])]
     limit = {
         name: getattr(m, name)
-        for m in field.metadata
+        for m in limits
         for name in ("ge", "gt", "le", "lt")
         if hasattr(m, name)
     }
