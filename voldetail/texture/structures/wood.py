@@ -83,7 +83,7 @@ RINGS = StructureModel(
         P("width", 0.1, 0.85, 0.5, "linear", 11, "Share of the period that is bright."),
         P("spread", 0.0, 0.9, 0.3, "linear", 6, "How much rings differ in width, each its own way."),
         P("softness", 0.0, 1.0, 0.5, "linear", 6, "How far rims fade; 1: to the middle of the narrower band."),
-        P("turbulence", 0.0, 3.0, 0.5, "linear", 11, "How many periods the rings are bent by."),
+        P("turbulence", 0.0, 2.0, 0.5, "linear", 11, "How many periods the rings are bent by."),
         P("turbulence_size", 24.0, 128.0, 64.0, "log", 11, "Texels a cell of the coarsest bend."),
         P("distance", 0.0, 600.0, 300.0, "linear", 11, "Texels from the plane's origin down to the rings' heart."),
     ),
