@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from voldetail.errors import InputError
 from voldetail.library.tables import BLOCK, Array, Floats, Table, by_scale, outline, outlined
 from voldetail.library.vectors import ISOTROPIC, LENGTH, ORIENTATIONS, ORIENTED, scales, swapped, turned, weights
+from voldetail.metric.gabor import GLOBAL
 
 FIRST_LOOK = 2048
 """Entries with the nearest outlines, compared in full to learn how near the nearest are."""
@@ -43,7 +44,7 @@ class Match:
     swapped: bool
 
 
-def distance(a: ArrayLike, b: ArrayLike, w_global: float | None = None) -> float:
+def distance(a: ArrayLike, b: ArrayLike, w_global: float = GLOBAL) -> float:
     """Return D of equation 6 between two vectors (750,); entries that are NaN in either are left out."""
     gaps = np.asarray(a, np.float64) - np.asarray(b, np.float64)
     return float(np.sqrt(np.nansum((weights(w_global) * gaps) ** 2)))
@@ -103,17 +104,18 @@ class _Question:
         others[:, ORIENTED:] = others[:, :ISOTROPIC] = 0.0
         self.products, self.constants = _multiplied(np.concatenate([oriented, others]), self.w2)
         short = outline(np.where(np.arange(LENGTH) < ISOTROPIC, np.float32(0.0), self.orders))
-        self.short_products, self.short_constants = _multiplied(short, self.w2[outlined()])
+        short_products, self.short_constants = _multiplied(short, self.w2[outlined()])
+        norms = np.repeat(self.counted[:, None], len(short), axis=1)
+        self.short_products: Array = np.ascontiguousarray(np.vstack([short_products, norms]).T)
 
     def bounds(self) -> Array:
         """What D^2 of each entry is at least, (N,)."""
-        table = self.table
-        found = np.empty(len(table.vectors), np.float32)
+        outlines = self.table.outlines
+        found = np.empty(outlines.shape[1], np.float32)
         for first in range(0, len(found), BLOCK):
-            here = slice(first, first + BLOCK)
-            block = table.outlines[here]
-            of_orders = block @ self.short_products + self.short_constants
-            found[here] = self._lightness(block, of_orders) + table.outline_norms[here] @ self.counted
+            block = outlines[:, first : first + BLOCK]
+            of_orders = self.short_products @ block + self.short_constants[:, None]
+            found[first : first + BLOCK] = self._lightness(block[0], block[1], of_orders)
         return found
 
     def squares(self, entries: NDArray[np.intp]) -> Array:
@@ -121,15 +123,14 @@ class _Question:
         block = self.table.vectors[entries]
         products = block @ self.products + self.constants
         turns = len(self.turns)
-        best = products[:, :turns].min(axis=1) + self._lightness(block, products[:, turns:])
+        best = products[:, :turns].min(axis=1) + self._lightness(block[:, 0], block[:, 1], products[:, turns:].T)
         return np.asarray(best + self.table.norms[entries] @ self.counted, np.float32)
 
-    def _lightness(self, block: Array, of_orders: Array) -> Array:
-        """The best order of tones, and contrast. These weigh so much that only their differences, squared, keep enough
-        digits."""
-        mean, deviation = block[:, 0], block[:, 1]
+    def _lightness(self, mean: Array, deviation: Array, of_orders: Array) -> Array:
+        """The best order of tones, and contrast. These may weigh so much that only their differences, squared, keep
+        enough digits."""
         w = self.w2[:ISOTROPIC].astype(np.float32)
-        gaps = [w[0] * (mean - order[0]) ** 2 + of_orders[:, k] for k, order in enumerate(self.orders)]
+        gaps = [w[0] * (mean - order[0]) ** 2 + of_orders[k] for k, order in enumerate(self.orders)]
         best = gaps[0] if len(gaps) == 1 else np.minimum(gaps[0], gaps[1])
         return np.asarray(best + w[1] * (deviation - self.orders[0, 1]) ** 2, np.float32)
 

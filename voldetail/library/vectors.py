@@ -85,17 +85,29 @@ def scales() -> NDArray[np.intp]:
     return np.concatenate([[-1, -1], isotropic, oriented]).astype(np.intp)
 
 
-def weights(w_global: float | None = None) -> NDArray[np.float64]:
+def weights(w_global: float = gabor.GLOBAL) -> NDArray[np.float64]:
     """Return w (750,) of GKHF14 equation 6: of each entry, its distribution's.
 
-    w_i follows the eye's sensitivity to contrast (`metric.gabor.weights`); w_global is by default their sum, as in the paper
-    (there 354.82, here 250). Raises InputError for a w_global that is negative or not finite.
+    w_i follows the eye's sensitivity to contrast (`metric.gabor.weights`). w_global: weight of the map's own mean and deviation,
+    by default the one with which they count as much as all else, see `metric.gabor.GLOBAL`; `published_w_global` is the
+    paper's. Raises InputError for a w_global that is negative or not finite.
     """
-    parts = gabor.weights()
-    of_scales = [parts[f"scale {scale}"][0].astype(np.float64) for scale in range(gabor.SCALES)]
-    total = float(sum(part.sum() for part in of_scales)) if w_global is None else float(w_global)
-    if not (np.isfinite(total) and total >= 0):
-        raise InputError(f"The weight of brightness and contrast is {total:g}; a finite number of at least 0 is needed.")
-    isotropic = np.array([part[0] for part in of_scales])
-    oriented = np.concatenate([part[1:] for part in of_scales])
-    return np.concatenate([[total, total], np.tile(isotropic, 2), np.tile(oriented, 2)])
+    if not (np.isfinite(w_global) and w_global >= 0):
+        raise InputError(f"The weight of brightness and contrast is {w_global:g}; a finite number of at least 0 is needed.")
+    isotropic = np.array([part[0] for part in _local_weights()])
+    oriented = np.concatenate([part[1:] for part in _local_weights()])
+    return np.concatenate([[w_global, w_global], np.tile(isotropic, 2), np.tile(oriented, 2)])
+
+
+def published_w_global() -> float:
+    """Return the sum of the other weights, 250 (354.82 with the paper's).
+
+    Equation 6 squares it, so that brightness and contrast decide nearly alone: of pictures of a library's own entries, made
+    with another seed, turned and swapped, it finds 28 % first among 600 entries, where the default finds 87 % (perlin, brick
+    and rings, 200 random entries each).
+    """
+    return float(sum(part.sum() for part in _local_weights()))
+
+
+def _local_weights() -> list[NDArray[np.float64]]:
+    return [gabor.weights()[f"scale {scale}"][0].astype(np.float64) for scale in range(gabor.SCALES)]
