@@ -97,8 +97,7 @@ class _Question:
         # The query turned back stands for the entry turned on.
         self.turns = np.stack([turned(known, -step) for step in range(ORIENTATIONS if rotations else 1)])
         self.orders = np.stack([known, swapped(known)] if swap else [known])
-        counted = (by_scale(np.sqrt(self.w2)) > 0).any(axis=0)
-        self.counted = counted.astype(np.float32)
+        self.counted = np.asarray((by_scale(np.sqrt(self.w2)) > 0).any(axis=0), np.float32)
         oriented, others = self.turns.copy(), self.orders.copy()
         oriented[:, :ORIENTED] = 0.0
         others[:, ORIENTED:] = others[:, :ISOTROPIC] = 0.0
