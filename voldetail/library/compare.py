@@ -110,12 +110,8 @@ class _Question:
     def bounds(self) -> Array:
         """What D^2 of each entry is at least, (N,)."""
         outlines = self.table.outlines
-        found = np.empty(outlines.shape[1], np.float32)
-        for first in range(0, len(found), BLOCK):
-            block = outlines[:, first : first + BLOCK]
-            of_orders = self.short_products @ block + self.short_constants[:, None]
-            found[first : first + BLOCK] = self._lightness(block[0], block[1], of_orders)
-        return found
+        of_orders = self.short_products @ outlines + self.short_constants[:, None]
+        return self._lightness(outlines[0], outlines[1], of_orders)
 
     def squares(self, entries: NDArray[np.intp]) -> Array:
         """D^2 of some entries in their best turn and order."""
