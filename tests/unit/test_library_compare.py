@@ -206,6 +206,7 @@ def test_known_pictures_are_retrieved_with_their_turn_and_order(library: list[En
         (lambda: entries(MODELS["star"], 0, 0), "at least one"),
         (lambda: entries(MODELS["star"], -1, 1), "counted from 0"),
         (lambda: grid_values(MODELS["star"], 44), "44 entries"),
+        (lambda: random_values(MODELS["star"], 0, seed=-1), "The seed is -1"),
     ],
 )
 def test_what_cannot_be_compared_is_refused(call: object, complaint: str) -> None:

@@ -56,7 +56,7 @@ def nearest(
     """Return the ``top`` entries nearest to ``query`` (750,), nearest first, each in its best turn and order of tones.
 
     rotations: False compares pictures as they lie; swap: False keeps the tones. Scales that are NaN in the query are left out.
-    Equal distances are in the order of the table. Raises InputError for a query of another shape or with entries that are not
+    Of equal distances the earlier entry is first. Raises InputError for a query of another shape or with entries that are not
     finite where a scale is not missing as a whole, and a top under 1.
     """
     asked = np.asarray(query, np.float32)

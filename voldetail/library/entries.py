@@ -36,8 +36,13 @@ class Entries:
 
 
 def random_values(model: StructureModel, k: int, seed: int = 0) -> dict[str, float]:
-    """Return the parameters of random entry ``k``: even over each range in its own spread (lengths by ratios)."""
+    """Return the parameters of random entry ``k``: even over each range in its own spread (lengths by ratios).
+
+    Raises InputError for a negative number or seed.
+    """
     _check_number(k)
+    if seed < 0:
+        raise InputError(f"The seed is {seed}; a whole number of at least 0 is needed.")
     # The generator is named, so that the numbers do not hang on which one NumPy likes best.
     numbers = np.random.Generator(np.random.PCG64([seed, crc32(model.name.encode()), k])).random(len(model.parameters))
     return {p.key: p.at(float(share)) for p, share in zip(model.parameters, numbers, strict=True)}
