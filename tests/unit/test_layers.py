@@ -20,7 +20,7 @@ ALLOWED: dict[str, set[str]] = {
     "apply": {"scene", "render", "detail", "image", "backend"},
     "export": {"scene", "render", "detail", "image", "backend"},
     "fit": {"scene", "render", "metric", "texture", "detail", "image", "backend"} | VERSION,
-    "library": {"scene", "render", "metric", "detail", "image", "backend"},
+    "library": {"scene", "render", "metric", "texture", "detail", "image", "backend"},  # texture: what it has entries of
     "render": {"scene", "detail", "backend"},  # scene: what it renders; detail: the reflectance it is seen with
     "scene": {"noise", "texture", "detail", "image", "backend"},
     "texture": {"noise", "detail", "image"},

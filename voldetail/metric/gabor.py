@@ -43,6 +43,12 @@ GLOBAL = 1.8
 for this, 250 here; in equation 6 that lets them count for some ten thousand times as much. This is the paper's wish, met in the
 median over pairs of the 42 textures of results/metric: the root of 3.3, by which the squared local distance is the larger."""
 
+FEWEST_SAMPLES = 64
+"""A side on which responses are evaluated, of a picture that has as many: turning a picture then moves no sample by much."""
+
+SAMPLES_TOGETHER = 2**19
+"""Of filters whose responses are found at once: 4 MB of them; one at a time, calls take longer than sums in small pictures."""
+
 Indices = NDArray[np.intp]
 Spectrum = NDArray[np.complexfloating]
 
@@ -70,7 +76,7 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
     inside = image if mask is None else image[mask]
     filled = image if mask is None else np.where(mask, image, np.float32(inside.mean()))
     # Low frequencies of a large mean would drown the rest in single precision.
-    spectrum = fft.fft2(filled - inside.mean())
+    spectrum = np.tile(fft.fft2(np.asarray(filled - inside.mean(), np.float32)), (2, 2))
     depth = _depth(image.shape, mask)
     found = {"global": np.array([[inside.mean()], [inside.std()]], np.float32)}
     for scale in range(SCALES):
@@ -119,39 +125,58 @@ def _depth(shape: tuple[int, ...], mask: Mask | None) -> Array:
 
 
 def _moments(spectrum: Spectrum, depth: Array, scale: int, frequency: float, shift: float) -> Array:
-    """Mean and deviation (2, filters) of |I * g| over A_i, divided by the integral of |g| (equation 5)."""
-    transfers, rows, columns = _transfers(depth.shape, scale, frequency)
-    across = np.ix_(_kept(depth.shape[0], len(rows)), _kept(depth.shape[1], len(columns)))
-    area = depth[np.ix_(rows, columns)] >= REACH * SIGMAS[scale]
-    if not area.any():
-        return np.full((2, len(transfers)), np.nan, np.float32)
+    """Mean and deviation (2, filters) of |I * g| over A_i, divided by the integral of |g| (equation 5).
+
+    spectrum: (2h, 2w), the picture's twice in each direction, so that any h x w of it is one piece.
+    """
+    filters, rows, columns = _filters(depth.shape, scale, frequency)
+    area = np.flatnonzero(depth[np.ix_(rows, columns)] >= REACH * SIGMAS[scale])
+    if not len(area):
+        return np.full((2, len(filters)), np.nan, np.float32)
     share = np.float32(len(rows) * len(columns) / depth.size)
-    out = np.empty((2, len(transfers)), np.float32)
-    for index, transfer in enumerate(transfers):
-        response = np.abs(fft.ifft2(spectrum[across] * transfer)[area] * share + np.float32(shift))
-        out[:, index] = response.mean(), response.std()
-    return out
+    together = max(1, SAMPLES_TOGETHER // (len(rows) * len(columns)))
+    parts = []
+    for first in range(0, len(filters), together):
+        pieces = [
+            spectrum[row : row + len(rows), column : column + len(columns)] * transfer
+            for row, column, transfer in filters[first : first + together]
+        ]
+        # The order of frequencies multiplies by a wave of modulus 1; without a frequency, signs matter.
+        passed = np.stack(pieces) if frequency else fft.ifftshift(np.stack(pieces), axes=(1, 2))
+        response = fft.ifft2(passed, overwrite_x=True).reshape(len(pieces), -1)[:, area]
+        values = np.sqrt(response.real**2 + response.imag**2) * share if frequency else np.abs(response.real * share + shift)
+        parts.append(np.stack([values.mean(axis=1), values.std(axis=1)]))
+    return np.concatenate(parts, axis=1).astype(np.float32)
+
+
+Filter = tuple[int, int, Array]
 
 
 @lru_cache(64)
-def _transfers(shape: tuple[int, int], scale: int, frequency: float) -> tuple[Array, Indices, Indices]:
-    """Spectra (filters, h, w) of one frequency's filters, and the rows and columns of the picture that are evaluated.
+def _filters(shape: tuple[int, int], scale: int, frequency: float) -> tuple[tuple[Filter, ...], Indices, Indices]:
+    """One frequency's filters, each as a piece of a spectrum (its first row and column) and its own spectrum there, and the
+    rows and columns of the picture that are evaluated.
 
     g(x) = G(x) (exp(2 pi i f . x) - c) with a Gaussian G of integral 1 and c such that g has none, as Manjunath & Ma
-    (1996) have it: a filter that answered to brightness would measure little else. Frequency 0 is G alone.
+    (1996) have it: a filter that answered to brightness would measure little else. Frequency 0 is G alone. What a filter
+    passes is moved from about its wave to about 0, which multiplies the response by a wave of modulus 1: a grid as fine as G
+    needs then holds the response's magnitude, however short the wave.
     """
     sigma = SIGMAS[scale]
     f = frequency / sigma
-    sizes = [_size(n, 2 * (f + PASSED / sigma)) for n in shape]
-    y, x = (_kept_frequencies(n, m) for n, m in zip(shape, sizes, strict=True))
-    angles = np.arange(ORIENTATIONS if frequency else 1) * np.pi / ORIENTATIONS
-    # Rows run downwards, angles counter-clockwise.
-    waves = [(-f * np.sin(angle), f * np.cos(angle)) for angle in angles]
+    sizes = [_size(n, 2 * PASSED / sigma) for n in shape]
     bias = np.exp(-2 * np.pi**2 * frequency**2) if frequency else 0.0
-    found = [_window(sigma, y - v, x - u) - bias * _window(sigma, y, x) for v, u in waves]
+    found = []
+    for angle in np.arange(ORIENTATIONS if frequency else 1) * np.pi / ORIENTATIONS:
+        # Rows run downwards, angles counter-clockwise.
+        wave = (-f * np.sin(angle), f * np.cos(angle))
+        first = [round(w * n) - m // 2 for w, n, m in zip(wave, shape, sizes, strict=True)]
+        y, x = ((k + np.arange(m)) / n for k, m, n in zip(first, sizes, shape, strict=True))
+        transfer = _window(sigma, y - wave[0], x - wave[1]) - bias * _window(sigma, y, x)
+        scaled = np.asarray(transfer / _integral(frequency), np.float32)
+        found.append((first[0] % shape[0], first[1] % shape[1], scaled))
     rows, columns = ((np.arange(m) * n) // m for n, m in zip(shape, sizes, strict=True))
-    transfers = np.asarray(np.array(found) / _integral(frequency), np.float32)
-    return transfers, rows, columns
+    return tuple(found), rows, columns
 
 
 def _window(sigma: float, y: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -162,17 +187,8 @@ def _window(sigma: float, y: NDArray[np.float64], x: NDArray[np.float64]) -> NDA
 
 def _size(pixels: int, passed: float) -> int:
     """Samples on which a filter that passes `passed` cycles a pixel, both ways together, is evaluated."""
-    needed = int(np.ceil(pixels * passed)) + 1
+    needed = max(int(np.ceil(pixels * passed)) + 1, FEWEST_SAMPLES)
     return min(int(fft.next_fast_len(needed)), pixels)
-
-
-def _kept(pixels: int, samples: int) -> Indices:
-    """Places, in a spectrum of `pixels`, of the lowest `samples` frequencies."""
-    return np.asarray(np.round(np.fft.fftfreq(samples) * samples).astype(np.intp) % pixels)
-
-
-def _kept_frequencies(pixels: int, samples: int) -> NDArray[np.float64]:
-    return np.asarray(np.fft.fftfreq(samples) * samples / pixels)
 
 
 @lru_cache
