@@ -100,7 +100,7 @@ def main() -> None:
         if options.sheets and photograph.credit:
             picture, seed = pixels(photograph), best_seed(record)
             tiles = {way: make(picture, way, seed, options.size).tile for way in WAYS}
-            sheet(options.output / f"{photograph.name}.png", photograph, picture, tiles, seed)
+            sheet(options.output / f"{photograph.name}.jpg", photograph, picture, tiles, seed)
     found = [json.loads(path.read_text()) for path in sorted(records.glob("*.json"))]
     if found:
         summarise(options.output, found, best_seed)

@@ -56,7 +56,9 @@ def child(*words: str) -> Iterator[subprocess.Popen[str]]:
     """A process of its own that runs the command; killed at the end if it is still there."""
     code = CHILD.format(tests=str(Path(__file__).parent))
     process = subprocess.Popen(
-        [sys.executable, "-c", code, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", code, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        # A parent in the background may have Ctrl-C ignored, and its children with it.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     try:
         yield process
