@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from voldetail.errors import InputError
 from voldetail.image import luminance, to_linear, to_srgb
-from voldetail.texture.analysis import CONSTANT, principal_axes
+from voldetail.texture.analysis import CONSTANT, pixels_of, principal_axes
 
 Array = NDArray[np.float32]
 Mask = NDArray[np.bool_]
@@ -126,14 +126,7 @@ def _poor(explained: float) -> str:
 
 
 def _checked(photo: ArrayLike, mask: ArrayLike | None, trim: float) -> tuple[Array, Mask]:
-    try:
-        pixels = np.asarray(photo, dtype=np.float32)
-    except (TypeError, ValueError):
-        raise InputError("The photo is no array of numbers; give rows of pixels (H, W, 3) of linear light.") from None
-    if pixels.ndim == 2:
-        pixels = np.repeat(pixels[..., None], 3, axis=2)
-    if pixels.ndim != 3 or pixels.shape[2] != 3:
-        raise InputError(f"The photo has the shape {pixels.shape}; (H, W, 3) or, for grey, (H, W) is needed.")
+    pixels = pixels_of(photo)
     used = np.ones(pixels.shape[:2], bool) if mask is None else np.asarray(mask).astype(bool)
     if used.shape != pixels.shape[:2]:
         raise InputError(f"The mask has the shape {used.shape} and the photo {pixels.shape[:2]}; give one of its size.")

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 
 from voldetail.errors import InputError
 from voldetail.scene import isosurface
-from voldetail.scene.meshes import Mesh, load_mesh, normalise
+from voldetail.scene.closed_mesh import closed_mesh
+from voldetail.scene.meshes import Mesh
 from voldetail.scene.proxy import rotation_matrix
 from voldetail.scene.setup import ProxySetup
 from voldetail.scene.shell_blocks import SIDE, block_counts, near_blocks
@@ -129,7 +128,7 @@ def plan_shell(
             f"The shell is {thickness:g} scene units thick, less than {LEAST_CELLS} cells of {edge:g}: it would fall between"
             f" them; use a thickness of at least {LEAST_CELLS * edge:.3g} or an edge of at most {thickness / LEAST_CELLS:.3g}."
         )
-    mesh = _closed_mesh(proxy) if proxy.kind == "mesh" else None
+    mesh = closed_mesh(proxy) if proxy.kind == "mesh" else None
     if solid:
         _check_inside(proxy, thickness)
     plan = _layout(proxy, mesh, edge, thickness, amplitude)
@@ -153,30 +152,6 @@ def plan_shell(
         return plan
     blocks = len(near_blocks(plan))
     return replace(plan, blocks=blocks, seconds=plan.seconds + blocks * SECONDS_A_BLOCK["mesh" if mesh else "simple"])
-
-
-def _closed_mesh(proxy: ProxySetup) -> Mesh:
-    assert proxy.mesh is not None
-    return _read_closed(proxy.mesh, max(proxy.extent), _changed(proxy.mesh))
-
-
-def _changed(path: Path) -> int:
-    """Return when a file was last written, 0 where it cannot be told."""
-    try:
-        return path.stat().st_mtime_ns
-    except OSError:
-        return 0
-
-
-@lru_cache(maxsize=2)  # planned for several sizes of cells, and then once more for what was chosen
-def _read_closed(path: Path, size: float, changed: int) -> Mesh:
-    mesh = normalise(load_mesh(path), size)
-    if not mesh.watertight:
-        raise InputError(
-            f"The mesh {path} is not closed, so it has no inside to fill: close its holes (in Blender: Mesh > Clean Up"
-            " > Fill Holes, and give a sheet a thickness with the Solidify modifier), or put the detail on it as displacement."
-        )
-    return mesh
 
 
 def _check_inside(proxy: ProxySetup, thickness: float) -> None:

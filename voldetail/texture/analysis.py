@@ -137,9 +137,8 @@ def _has_direction(picture: NDArray[np.float32], used: NDArray[np.bool_] | None)
     return not isotropy_of(picture.astype(np.float64), used).isotropic
 
 
-def _checked(
-    photo: ArrayLike, mask: ArrayLike | None
-) -> tuple[NDArray[np.float32], NDArray[np.bool_] | None]:
+def pixels_of(photo: ArrayLike) -> NDArray[np.float32]:
+    """Return a photo (H, W, 3), or a grey one (H, W), as (H, W, 3) float32. Raises InputError for anything else."""
     try:
         pixels = np.asarray(photo, dtype=np.float32)
     except (TypeError, ValueError):
@@ -148,6 +147,13 @@ def _checked(
         pixels = np.repeat(pixels[..., None], 3, axis=2)
     if pixels.ndim != 3 or pixels.shape[2] != 3:
         raise InputError(f"The photo has the shape {pixels.shape}; (H, W, 3) or, for grey, (H, W) is needed.")
+    return pixels
+
+
+def _checked(
+    photo: ArrayLike, mask: ArrayLike | None
+) -> tuple[NDArray[np.float32], NDArray[np.bool_] | None]:
+    pixels = pixels_of(photo)
     rows, columns = pixels.shape[:2]
     if min(rows, columns) < SMALLEST_SIDE:
         raise InputError(
