@@ -158,7 +158,7 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
     from voldetail.fit.evenness import warning
     from voldetail.fit.fitter import fit as search
     from voldetail.fit.session import Progress, State
-    from voldetail.fit.target import load_photo_of, make_target
+    from voldetail.fit.target import Target, load_photo_of
 
     console = remarks()
     picture = load_photo_of(place.setup)
@@ -169,14 +169,15 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
     use_threads(threads)
     if guess is not None:
         output().print(guess.sentence, markup=False, soft_wrap=True)
-    if not place.setup.photo.stationarize:
-        uneven = warning(make_target(place.setup, picture).unevenness)
-        if uneven:
-            console.print(uneven, markup=False, soft_wrap=True)
 
     with ProgressView(console) as view:
         if place.setup.photo.stationarize:
             view.step("making an even picture of the photo")
+
+        def on_target(target: Target) -> None:
+            uneven = "" if place.setup.photo.stationarize else warning(target.unevenness)
+            if uneven:
+                console.print(uneven, markup=False, soft_wrap=True)
 
         def on_progress(progress: Progress) -> None:
             place.begin(keep=start is not None)
@@ -188,7 +189,8 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
             place.save_state(state, picture.sha256)
 
         result = search(
-            place.setup, photo=picture, start=start, light_guess=guess, on_progress=on_progress, on_state=on_state
+            place.setup, photo=picture, start=start, light_guess=guess, on_progress=on_progress, on_state=on_state,
+            on_target=on_target,
         )
         place.begin(keep=start is not None)  # a resumed fit that was complete reports no progress
         place.finish(result)

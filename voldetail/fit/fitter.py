@@ -61,12 +61,14 @@ def fit(
     setup: Setup, *, photo: Photo | None = None, start: State | None = None, light_guess: LightGuess | None = None,
     on_progress: Callable[[Progress], None] = lambda progress: None,
     on_state: Callable[[State], None] = lambda state: None,
+    on_target: Callable[[Target], None] = lambda target: None,
 ) -> FitResult:
     """Return the Detail whose rendering has the texture statistics of the photo (GD10 section 7).
 
     ``start`` continues an interrupted fit from one of the states handed to ``on_state``. Ctrl-C ends the search with
     the best so far. A light "auto" is estimated first; ``light_guess`` tells that the setup's light was estimated so
-    already, for the record. Raises InputError for input that cannot be used.
+    already, for the record. ``on_target`` gets what will be compared, before the search. Raises InputError for
+    input that cannot be used.
     """
     if setup.fit.metric not in METRICS:
         raise InputError(f"There is no metric {setup.fit.metric!r}: choose one of {', '.join(METRICS)}.")
@@ -75,6 +77,7 @@ def fit(
     setup, found = resolve_light(setup, photo)
     light_guess = found or light_guess
     target = make_target(setup, photo)
+    on_target(target)
     session, stages = _session(setup, target, start, on_progress, on_state)
     status, interrupted = "the plan was carried out", False
     try:
