@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -23,6 +23,7 @@ from voldetail.fit.reflectance import colours
 from voldetail.fit.result import FitResult
 from voldetail.fit.session import Progress, Session, State, Stopped, derived_seed
 from voldetail.fit.space import Space
+from voldetail.fit.starts import Start
 from voldetail.fit.target import Target, load_photo_of, make_target
 from voldetail.fit.told import Told, told_of_medium
 from voldetail.image import Photo
@@ -62,13 +63,15 @@ def fit(
     on_progress: Callable[[Progress], None] = lambda progress: None,
     on_state: Callable[[State], None] = lambda state: None,
     on_target: Callable[[Target], None] = lambda target: None,
+    starts_for: Callable[[Setup, Target], Sequence[Start]] = lambda setup, target: (),
 ) -> FitResult:
     """Return the Detail whose rendering has the texture statistics of the photo (GD10 section 7).
 
     ``start`` continues an interrupted fit from one of the states handed to ``on_state``. Ctrl-C ends the search with
     the best so far. A light "auto" is estimated first; ``light_guess`` tells that the setup's light was estimated so
-    already, for the record. ``on_target`` gets what will be compared, before the search. Raises InputError for
-    input that cannot be used.
+    already, for the record. ``on_target`` gets what will be compared, before the search. ``starts_for`` may tell where to
+    start instead of covering the space, and the search is then shorter; it is asked for surfaces under the default solver and
+    metric only. Raises InputError for input that cannot be used.
     """
     if setup.fit.metric not in METRICS:
         raise InputError(f"There is no metric {setup.fit.metric!r}: choose one of {', '.join(METRICS)}.")
@@ -78,7 +81,8 @@ def fit(
     light_guess = found or light_guess
     target = make_target(setup, photo)
     on_target(target)
-    session, stages = _session(setup, target, start, on_progress, on_state)
+    starts = starts_for(setup, target) if takes_starts(setup) else ()
+    session, stages = _session(setup, target, start, starts, on_progress, on_state)
     status, interrupted = "the plan was carried out", False
     try:
         while session.stage < len(stages):
@@ -113,6 +117,11 @@ def fit(
     )
 
 
+def takes_starts(setup: Setup) -> bool:
+    """Whether a fit of ``setup`` can be told where to start: the default one, of a relief."""
+    return setup.mode == "displacement" and setup.fit.solver == "default" and setup.fit.metric == "combined"
+
+
 def space_of(setup: Setup, target: Target) -> Space:
     """Return the space of details that the zone of ``target`` can show.
 
@@ -140,12 +149,15 @@ def space_of(setup: Setup, target: Target) -> Space:
 
 
 def _session(
-    setup: Setup, target: Target, start: State | None,
+    setup: Setup, target: Target, start: State | None, starts: Sequence[Start],
     on_progress: Callable[[Progress], None], on_state: Callable[[State], None],
 ) -> tuple[Session, tuple[Stage, ...]]:
-    planner = paper_plan if setup.fit.solver == "paper" else default_plan
     space = space_of(setup, target)
-    plan = planner(space, anisotropy(target.luminance, target.mask), setup.fit.evaluations)
+    stretched = anisotropy(target.luminance, target.mask)
+    if setup.fit.solver == "paper":
+        plan = paper_plan(space, stretched, setup.fit.evaluations)
+    else:
+        plan = default_plan(space, stretched, setup.fit.evaluations, starts)
     coarse = _coarse(setup, target)
     both = setup.fit.solver != "paper" and coarse.target is not target
     fine = Objective(
