@@ -53,6 +53,9 @@ COLOUR_SEEDS = 3
 INTERVAL_SEEDS = 2
 """Noise seeds for the intervals of numbers."""
 
+FEWEST_TOLD = 400
+"""Evaluations below which a library is not made for a fit: that takes longer than the fit."""
+
 FINALISTS = 3
 DETAIL_SEEDS = 4
 """Seeds tried for the finished detail: one noise field of a few hundred cells can by chance be an odd one."""
@@ -81,7 +84,7 @@ def fit(
     light_guess = found or light_guess
     target = make_target(setup, photo)
     on_target(target)
-    starts = starts_for(setup, target) if takes_starts(setup) else ()
+    starts = starts_for(setup, target) if (takes_starts(setup) if start is None else start.started) else ()
     session, stages = _session(setup, target, start, starts, on_progress, on_state)
     status, interrupted = "the plan was carried out", False
     try:
@@ -118,8 +121,11 @@ def fit(
 
 
 def takes_starts(setup: Setup) -> bool:
-    """Whether a fit of ``setup`` can be told where to start: the default one, of a relief."""
-    return setup.mode == "displacement" and setup.fit.solver == "default" and setup.fit.metric == "combined"
+    """Whether a fit of ``setup`` is told where to start: the default one of a relief, unless it is to be a short one."""
+    settings = setup.fit
+    usual = setup.mode == "displacement" and settings.solver == "default" and settings.metric == "combined"
+    short = settings.library == "auto" and settings.evaluations is not None and settings.evaluations < FEWEST_TOLD
+    return usual and not short and settings.library != "none"
 
 
 def space_of(setup: Setup, target: Target) -> Space:
@@ -168,7 +174,7 @@ def _session(
     planned = setup.fit.evaluations or plan.evaluations
     session = Session(
         coarse, fine, space, setup.seed, planned, setup.fit.seeds, setup.fit.time_limit,
-        on_progress, on_state, start, stages=len(plan.stages),
+        on_progress, on_state, start, stages=len(plan.stages), started=bool(starts),
     )
     return session, plan.stages
 

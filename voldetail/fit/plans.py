@@ -55,7 +55,7 @@ of about a minute on two cores."""
 VOLUME_EFFORT = Effort(220, ((8, 40, False), (5, 60, False), (3, 80, False), (2, 50, True)), 60)
 """A picture of a volume at full resolution takes as long as ten of a relief: for a fit of under three minutes."""
 
-STARTED_EFFORT = Effort(0, ((6, 40, False), (3, 50, False), (2, 60, True)), 60)
+STARTED_EFFORT = Effort(0, ((8, 40, False), (4, 50, False), (2, 70, True)), 80)
 """From starts that were chosen of thousands: what covering the space and its first rounds would find is there already."""
 
 UNSEEN_SEEDS = 3
