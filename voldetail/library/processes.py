@@ -12,7 +12,7 @@ from collections import Counter, deque
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from multiprocessing import get_context
+from multiprocessing import get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any
@@ -114,7 +114,8 @@ def _started(sources: Sequence[Source]) -> _Worker:
     context = get_context("spawn")
     ours, theirs = context.Pipe()
     process = context.Process(target=_work, args=(theirs, tuple(sources)), daemon=True)
-    with _one_thread():
+    resource_tracker.ensure_running()  # or starting it would let Ctrl-C through again
+    with _one_thread(), _without_interrupts():
         process.start()
     theirs.close()  # or its end would not be seen
     return _Worker(process, ours)
@@ -122,7 +123,6 @@ def _started(sources: Sequence[Source]) -> _Worker:
 
 def _work(pipe: Connection, sources: tuple[Source, ...]) -> None:
     """What a process does until nobody is at the other end of its pipe."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches it too; the one who started it ends it
     with suppress(EOFError, OSError):
         while True:
             task: Task = pipe.recv()
@@ -149,3 +149,16 @@ def _one_thread() -> Iterator[None]:
                 del os.environ[name]
             else:
                 os.environ[name] = value
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Ctrl-C waits, and a process started meanwhile never gets it: the one who started it ends it."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
