@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import logging
 import threading
-import time
 from asyncio import CancelledError as AsyncCancelledError
 from collections.abc import Iterator, Sequence
 from concurrent.futures import CancelledError
@@ -24,10 +23,8 @@ CONNECT_SECONDS = 10.0
 WORKER_SECONDS = 60.0
 """That are waited for the first worker."""
 
-LOST_SECONDS = 10.0
-"""After which a scheduler that does not answer has gone away."""
-
 POLL_SECONDS = 1.0
+"""Between two looks at whether the scheduler is there, where no chunk comes."""
 
 IN_FLIGHT = 2
 """Chunks given out for each thread of the workers: one that is computed and one that waits."""
@@ -76,20 +73,16 @@ def on_cluster(sources: Sequence[Source], tasks: Sequence[Task], address: str) -
 def _gathered(distributed: Any, client: Any, sources: Sequence[Source], tasks: Sequence[Task]) -> Iterator[tuple[Task, Chunk]]:
     left: list[Task] = list(reversed(tasks))
     running: dict[Any, Task] = {}
-    heard = time.monotonic()
     while left or running:
-        if client.status != "running":
-            if client.status == "closed" or time.monotonic() - heard > LOST_SECONDS:
-                raise CancelledError
-            time.sleep(POLL_SECONDS / 10)
-            continue
-        heard = time.monotonic()
+        if client.status != "running":  # all that was given out is lost, even where it connects again
+            raise CancelledError
         most = IN_FLIGHT * max(1, sum(client.nthreads().values()))
         while left and len(running) < most:
             task = left.pop()
             running[client.submit(_chunk, sources[task.source], task.first, task.count, pure=False)] = task
         try:
-            done = distributed.wait(list(running), timeout=POLL_SECONDS, return_when="FIRST_COMPLETED").done
+            with client.as_current():
+                done = distributed.wait(list(running), timeout=POLL_SECONDS, return_when="FIRST_COMPLETED").done
         except TimeoutError:
             continue
         for future in done:
