@@ -13,7 +13,7 @@ import pytest
 from voldetail.cli import main
 from voldetail.library.store import open_library
 
-BUILD = ["library", "build", "woodlines", "star", "--entries", "30"]
+BUILD = ["library", "build", "woodlines", "star", "--entries", "24"]
 
 
 def files_of(folder: Path) -> dict[str, bytes]:
@@ -51,7 +51,7 @@ def test_a_stopped_and_a_killed_build_go_on_to_the_same_library(built: Path, tmp
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does it: to the workers too
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130, out + err
-    assert "of 60 entries are kept in" in err
+    assert "of 48 entries are kept in" in err
     assert "the same command goes on." in err
     assert "Traceback" not in err
     assert not path.exists()
@@ -69,7 +69,7 @@ def test_a_stopped_and_a_killed_build_go_on_to_the_same_library(built: Path, tmp
 def test_a_library_is_told_of(built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["library", "info", str(built), "--check"]) == 0
     shown = capsys.readouterr().out
-    for words in ("woodlines", "star", "spacing, waviness", "random", "60, 20", "version 1", "current", "checked"):
+    for words in ("woodlines", "star", "spacing, waviness", "random", "48, 16", "version 1", "current", "checked"):
         assert words in shown
     assert shown.count("yes") == 2
     copied = Path(shutil.copytree(built, tmp_path / "lib"))
