@@ -7,6 +7,7 @@ sees to that.
 from __future__ import annotations
 
 import logging
+import re
 import threading
 from asyncio import CancelledError as AsyncCancelledError
 from collections.abc import Iterator, Sequence
@@ -14,10 +15,14 @@ from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from typing import Any
 
+from voldetail.detail.refusal import shown
 from voldetail.errors import InputError
 from voldetail.library.plan import Task
 from voldetail.library.source import Chunk, Source
 from voldetail.library.vectors import definition, digest
+
+ADDRESS = r"((tcp|tls|ws|wss|ucx)://)?[^\s/]+:\d{1,5}"
+"""What Dask calls one: a client that is given something else prints more than one sentence."""
 
 CONNECT_SECONDS = 10.0
 WORKER_SECONDS = 60.0
@@ -25,6 +30,8 @@ WORKER_SECONDS = 60.0
 
 POLL_SECONDS = 1.0
 """Between two looks at whether the scheduler is there, where no chunk comes."""
+
+SAME = "install this version on every machine of the cluster and start it again."
 
 IN_FLIGHT = 2
 """Chunks given out for each thread of the workers: one that is computed and one that waits."""
@@ -44,6 +51,10 @@ def on_cluster(sources: Sequence[Source], tasks: Sequence[Task], address: str) -
         raise InputError(
             "--scheduler needs Dask, which is not installed; install it with: pip install 'voldetail[cluster]'."
         ) from None
+    if not re.fullmatch(ADDRESS, address):
+        raise InputError(
+            f"The scheduler {shown(address)} is no address; give what dask scheduler prints, e.g. tcp://192.168.0.5:8786."
+        )
     again = "what is done is kept, give the same command again when it is back."
     with _quiet():
         try:
@@ -66,6 +77,10 @@ def on_cluster(sources: Sequence[Source], tasks: Sequence[Task], address: str) -
                 f"Several workers of {address} ended while they computed the same entries; give them more memory. What is done "
                 "is kept, give the same command again."
             ) from error
+        except (ImportError, RuntimeError) as error:
+            if isinstance(error, RuntimeError) and "deserialization" not in str(error):
+                raise
+            raise InputError(f"The scheduler {address} or its workers lack voldetail; {SAME}") from error
         finally:
             client.close(timeout=2)
 
@@ -89,7 +104,7 @@ def _gathered(distributed: Any, client: Any, sources: Sequence[Source], tasks: S
             task = running[future]
             theirs, values, vectors = future.result()
             if theirs != _ours(sources[task.source]):
-                raise InputError("The workers have another version of voldetail; install this one on them and start them again.")
+                raise InputError(f"The workers of the scheduler have another voldetail; {SAME}")
             del running[future]
             yield task, (values, vectors)
 
