@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from voldetail.cli import main
+from voldetail.library.index import open_index
 from voldetail.library.store import open_library
 
 BUILD = ["library", "build", "woodlines", "star", "--entries", "24"]
@@ -73,6 +74,9 @@ def test_a_library_is_told_of(built: Path, tmp_path: Path, capsys: pytest.Captur
         assert words in shown
     assert shown.count("yes") == 2
     copied = Path(shutil.copytree(built, tmp_path / "lib"))
+    assert main(["library", "index", str(copied)]) == 0
+    assert "lib/index  " in capsys.readouterr().out.replace("\\", "/")
+    assert set(open_index(open_library(copied))) == {"woodlines", "star"}
     text = (copied / "zarr.json").read_text()
     (copied / "zarr.json").write_text(text.replace('"reach": 2.5', '"reach": 2.6'))
     assert main(["library", "info", str(copied)]) == 0

@@ -46,6 +46,7 @@ def build(
         str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler whose workers compute, e.g. tcp://host:8786.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the library that is there.")] = False,
+    indexed: Annotated[bool, typer.Option("--index", help="Make its index as well, see library index.")] = False,
 ) -> None:
     """Make many pictures of procedural textures and keep their parameters and descriptors.
 
@@ -85,6 +86,14 @@ def build(
     output().print(
         f"{out}  {plan.entries} entries, {_size(plan.bytes)}, {duration(end.seconds)}{speed}", markup=False, soft_wrap=True
     )
+    if indexed:
+        _index(out)
+
+
+@library_app.command()
+def index(library: Annotated[Path, typer.Argument(metavar="LIB", help="A library, as library build makes it.")]) -> None:
+    """Make a library's index: of millions of entries, a query then compares those that are likely, and may miss some."""
+    _index(library)
 
 
 @library_app.command()
@@ -110,6 +119,7 @@ def info(
         ("descriptor", f"version {version}, {header.record.descriptor_sha256[:12]}"),
         ("weights", f"w_global {header.w_global:g}"),
         ("library", f"{header.sha256[:12]}, {state}"),
+        ("index", "there" if (library / "index").is_file() else "none"),
     ):
         output().print(f"{label + ':':12}{text}", markup=False, soft_wrap=True)
     if check:
@@ -186,6 +196,19 @@ def _check(header: Header) -> None:
                 view.step(f"checking: {entries} of {header.entries} entries")
 
         check(open_library(header.path), tell)
+
+
+def _index(path: Path) -> None:
+    from voldetail.cli.progress import ProgressView
+    from voldetail.library.index import write_index
+    from voldetail.library.store import open_library
+
+    library = open_library(path)
+    with ProgressView(remarks()) as view:
+        view.step("making the index")
+        total = library.header.entries
+        made = write_index(library, lambda done: view.step(f"making the index: {done} of {total} entries"))
+    output().print(f"{made}  {_size(made.stat().st_size)}", markup=False, soft_wrap=True)
 
 
 def _teller(view: ProgressView, last: list[BuildProgress]) -> Callable[[BuildProgress], None]:

@@ -56,15 +56,30 @@ def distance(a: ArrayLike, b: ArrayLike, w_global: float = GLOBAL) -> float:
 
 
 def nearest(
-    table: Table, query: ArrayLike, top: int = 8, *, rotations: bool = True, swap: bool = True
+    table: Table, query: ArrayLike, top: int = 8, *, rotations: bool = True, swap: bool = True,
+    among: NDArray[np.intp] | None = None,
 ) -> tuple[Match, ...]:
     """Return the ``top`` entries nearest to ``query`` (750,), nearest first, each in its best turn and order of tones.
 
-    rotations: False compares pictures as they lie; swap: False keeps the tones. Scales that are NaN in the query are left out.
-    Of equal distances the earlier entry is first. Raises InputError for a query of another shape or with entries that are not
-    finite where a scale is not missing as a whole, and a top under 1.
+    rotations: False compares pictures as they lie; swap: False keeps the tones. among: numbers of the entries that are compared,
+    all by default. Scales that are NaN in the query are left out. Of equal distances the earlier entry is first. Raises
+    InputError for a query of another shape or with entries that are not finite where a scale is not missing as a whole, and a
+    top under 1.
     """
     asked = np.asarray(query, np.float32)
+    check_query(asked, top)
+    missing = np.isnan(asked)
+    question = _Question(table, np.where(missing, np.float32(0.0), asked), missing, rotations, swap)
+    if among is None:
+        likely = _candidates(question, min(top * RERANKED, len(table.vectors)))
+    else:
+        likely = _best(among, question.squares(among), top * RERANKED)
+    matches = [question.exact(int(entry)) for entry in likely]
+    return tuple(sorted(matches, key=lambda match: (match.distance, match.entry))[:top])
+
+
+def check_query(asked: Array, top: int) -> None:
+    """Raise InputError for what `nearest` refuses."""
     if asked.shape != (LENGTH,):
         raise InputError(f"The query has the shape {asked.shape}; ({LENGTH},) is needed.")
     if top < 1:
@@ -73,10 +88,6 @@ def nearest(
     whole = np.isin(scales(), np.setdiff1d(scales(), scales()[~missing]))
     if np.isinf(asked).any() or (missing & ~whole).any() or missing[:ISOTROPIC].any():
         raise InputError("The query has entries that are NaN or infinite; describe the picture again.")
-    question = _Question(table, np.where(missing, np.float32(0.0), asked), missing, rotations, swap)
-    kept = min(top * RERANKED, len(table.vectors))
-    matches = [question.exact(int(entry)) for entry in _candidates(question, kept)]
-    return tuple(sorted(matches, key=lambda match: (match.distance, match.entry))[:top])
 
 
 def _candidates(question: _Question, kept: int) -> NDArray[np.intp]:
@@ -90,7 +101,12 @@ def _candidates(question: _Question, kept: int) -> NDArray[np.intp]:
     others = np.flatnonzero(bounds <= farthest + SLACK)
     blocks = [question.squares(others[k : k + BLOCK]) for k in range(0, len(others), BLOCK)]
     numbers, squares = np.concatenate([first, others]), np.concatenate([found, *blocks])
-    return np.asarray(numbers[np.argpartition(squares, kept - 1)[:kept]], np.intp)
+    return _best(numbers, squares, kept)
+
+
+def _best(numbers: NDArray[np.intp], squares: Array, kept: int) -> NDArray[np.intp]:
+    """The numbers of the ``kept`` smallest squares."""
+    return numbers if len(numbers) <= kept else numbers[np.argpartition(squares, kept - 1)[:kept]]
 
 
 class _Question:
