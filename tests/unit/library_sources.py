@@ -32,7 +32,7 @@ class Counted:
         return {"kind": "counted"}
 
     def chunk(self, first: int, count: int) -> Chunk:
-        if self.trouble and first <= self.at < first + count and self._once():
+        if self.marks is not None and first <= self.at < first + count and self._once():
             if self.trouble == "die":
                 os.kill(os.getpid(), signal.SIGKILL)
             if self.trouble == "stop":
@@ -47,6 +47,8 @@ class Counted:
         if self.trouble == "nan" and first <= self.at < first + count:
             vectors[self.at - first, 20] = np.nan
         values = np.arange(first, first + count)[:, None] + np.array([0.0, 0.5])
+        if self.trouble == "zeros":
+            values, vectors = 0 * values, 0 * vectors
         return values[:, : len(self.keys)], vectors
 
     def _once(self) -> bool:

@@ -97,10 +97,12 @@ def test_what_a_source_raises_is_raised(
 
 def test_a_full_disk_is_one_sentence_and_keeps_the_chunks(tmp_path: Path, expected: dict[str, bytes]) -> None:
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, limits[1]))  # a chunk is smaller, the library's larger
     try:
-        with pytest.raises(InputError, match="the entries are kept: free some space"):
-            build(SOURCES, COUNTS, tmp_path / "lib", workers=1, chunk=10)
+        # Less than a chunk, then more than that and less than the library's.
+        for most, says in ((20_000, r"Cannot write in .*lib\.part: .*kept: free some space"), (100_000, "entries are kept")):
+            resource.setrlimit(resource.RLIMIT_FSIZE, (most, limits[1]))
+            with pytest.raises(InputError, match=says):
+                build(SOURCES, COUNTS, tmp_path / "lib", workers=1, chunk=10)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert not (tmp_path / "lib").exists()

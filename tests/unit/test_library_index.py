@@ -121,5 +121,5 @@ def test_an_index_that_is_not_the_librarys_is_refused(library: Library, tmp_path
             open_index(other)
     numbers = ends + 12 * 8
     place.write_bytes(whole[:numbers] + b"\x7f" * (8 * COUNT) + whole[numbers + 8 * COUNT :])
-    with pytest.raises(InputError, match="names entries that the library does not have"):
+    with pytest.raises(InputError, match="names entries that its library lacks"):
         open_index(other)["clouds"].candidates(queries(library)[0])

@@ -72,6 +72,12 @@ def test_chunks_are_even_and_hold_a_block_at_most() -> None:
         assert 0 <= files * step - count < files
 
 
+def test_zeros_have_files_as_all_else(tmp_path: Path) -> None:
+    group = open_library(build([Counted(trouble="zeros")], 5, tmp_path / "lib", workers=1)).groups["counted"]
+    assert not np.asarray(group.values).any()
+    assert nearest(group.table, np.zeros(750), swap=False)[0].distance == 0.0
+
+
 def test_opening_reads_no_chunk(built: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     read: list[str] = []
     monkeypatch.setattr(np, "memmap", lambda *args, **rest: read.append("memmap"))

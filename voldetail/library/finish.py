@@ -6,12 +6,14 @@ import hashlib
 import os
 import shutil
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from voldetail.errors import InputError
+from voldetail.files import flush
 from voldetail.library.layout import FORMAT, FORMAT_VERSION, arrays_of, step_of
 from voldetail.library.plan import Plan
 from voldetail.library.staging import Staging
@@ -76,9 +78,7 @@ def _created(group: Any, array: Any) -> Any:
 def _flush(path: Path) -> None:
     """Bring files to the disk before the library gets its name, so that a crash leaves all of it or none."""
     for folder, _, files in os.walk(path):
-        for name in [*files, "."]:
-            descriptor = os.open(os.path.join(folder, name), os.O_RDONLY)
-            try:
-                os.fsync(descriptor)
-            finally:
-                os.close(descriptor)
+        for name in files:
+            flush(Path(folder) / name)
+        with suppress(OSError):  # some file systems cannot flush a folder
+            flush(Path(folder))

@@ -66,7 +66,13 @@ class Staging:
     def write(self, task: Task, chunk: Chunk) -> None:
         """Keep a chunk. Raises InputError where it is not what its source promises, and where the disk is full."""
         data = _bytes(self.plan.sources[task.source], task, chunk)
-        write_bytes(self._file(task), hashlib.sha256(data).digest() + data)
+        try:
+            write_bytes(self._file(task), hashlib.sha256(data).digest() + data)
+        except InputError as error:
+            reason = getattr(error.__cause__, "strerror", None) or error
+            raise InputError(
+                f"Cannot write in {self.folder}: {reason}; what is done is kept: free some space and give the same command again."
+            ) from error
 
     def rows(self, place: int) -> _Reader:
         """Return what reads a source's entries in order."""
