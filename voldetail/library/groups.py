@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from voldetail.library.pieces import Rows
 from voldetail.library.tables import Table
 
 
@@ -20,7 +21,7 @@ class Group:
 
     model: str
     keys: tuple[str, ...]
-    values: NDArray[np.float64]
+    values: NDArray[np.float64] | Rows[np.float64]
     table: Table
     seed: int
 

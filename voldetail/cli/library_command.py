@@ -1,0 +1,243 @@
+"""`voldetail library`: libraries of procedural textures, built once and searched by `voldetail retrieve`."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.table import Table
+
+from voldetail.cli.console import output, remarks
+from voldetail.detail.parameters import nearest
+from voldetail.errors import InputError
+
+if TYPE_CHECKING:
+    from voldetail.cli.progress import ProgressView
+    from voldetail.library.build import BuildProgress
+    from voldetail.library.layout import SourceRecord
+    from voldetail.library.source import Source
+    from voldetail.library.store import Header
+
+ALL = "all"
+SAMPLINGS = ("random", "grid")
+MOST_WORKERS = 1024
+PROJECTED = 1_000_000
+"""Entries, the largest databases of the paper's table 2 that are sampled at random."""
+
+library_app = typer.Typer(
+    name="library", help="Libraries of procedural textures: built once, searched by a photo.", no_args_is_help=True
+)
+
+
+@library_app.command()
+def build(
+    what: Annotated[list[str], typer.Argument(metavar="WHAT...", help="Names of structure models, or all.")],
+    out: Annotated[Path, typer.Option("--output", "-o", metavar="LIB", help="The library, a folder.")],
+    count: Annotated[
+        int | None, typer.Option("--entries", min=1, help="Entries of each model; a grid has its own number.")
+    ] = None,
+    sampling: Annotated[str, typer.Option(help="random or grid: how parameters are spread over their ranges.")] = "random",
+    seed: Annotated[int, typer.Option(min=0, help="The root of all random numbers.")] = 0,
+    workers: Annotated[int | None, typer.Option(min=1, max=MOST_WORKERS, help="Processes; default: a core each.")] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler whose workers compute, e.g. tcp://host:8786.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the library that is there.")] = False,
+    indexed: Annotated[bool, typer.Option("--index", help="Make its index as well, see library index.")] = False,
+) -> None:
+    """Make many pictures of procedural textures and keep their parameters and descriptors.
+
+    Ctrl-C keeps what is computed; the same command goes on.
+    """
+    from voldetail.cli.progress import ProgressView
+    from voldetail.library.build import build as made
+    from voldetail.library.build import check_output, part_of
+    from voldetail.library.plan import Plan
+    from voldetail.report.facts import duration
+
+    if scheduler is not None and workers is not None:
+        raise InputError("--workers and --scheduler were both given; a scheduler has its own workers, so leave out --workers.")
+    sources = sources_of(what, sampling, seed)
+    counts = _counts(sources, count)
+    plan = Plan(tuple(sources), tuple(counts))
+    check_output(out, force)
+    _check_room(out, plan.bytes, part_of(out))
+    of = f"{plan.entries} entries of {len(sources)} model{'s' if len(sources) > 1 else ''}"
+    remarks().print(f"{of}, {_size(plan.bytes)} on disk and twice that while building.", markup=False, soft_wrap=True)
+    last: list[BuildProgress] = []
+    with ProgressView(remarks()) as view:
+        tell = _teller(view, last)
+        try:
+            made(sources, counts, out, workers=workers, scheduler=scheduler, force=force, on_progress=tell)
+        except KeyboardInterrupt:
+            done = last[-1].done if last and last[-1].stage == "computing" else plan.entries
+            remarks().print(
+                f"{done} of {plan.entries} entries are kept in {part_of(out)}; the same command goes on.", markup=False,
+                soft_wrap=True,
+            )  # fmt: skip
+            raise
+    end = last[-1]
+    speed = ""
+    if end.rate:
+        speed = f": {end.rate:.3g} entries a second, a million would take {PROJECTED / end.rate / 3600:.2g} hours here"
+    output().print(
+        f"{out}  {plan.entries} entries, {_size(plan.bytes)}, {duration(end.seconds)}{speed}", markup=False, soft_wrap=True
+    )
+    if indexed:
+        _index(out)
+
+
+@library_app.command()
+def index(library: Annotated[Path, typer.Argument(metavar="LIB", help="A library, as library build makes it.")]) -> None:
+    """Make a library's index: of millions of entries, a query then compares those that are likely, and may miss some."""
+    _index(library)
+
+
+@library_app.command()
+def info(
+    library: Annotated[Path, typer.Argument(metavar="LIB", help="A library, as library build makes it.")],
+    check: Annotated[bool, typer.Option("--check", help="Read everything and hold it against its hashes.")] = False,
+) -> None:
+    """Say what is in a library, how it was made, and whether this voldetail can still use it."""
+    from voldetail.library.store import read_header
+
+    header = read_header(library)
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    for heading in ("source", "entries", "numbers", "sampling", "seed", "current"):
+        table.add_column(heading, no_wrap=heading != "numbers")
+    for name, record in header.sources.items():
+        sampling = str(record.definition.get("sampling", ""))[:20]
+        table.add_row(name, str(record.entries), ", ".join(record.keys), sampling, str(record.seed), _current(name, record))
+    output().print(table)
+    version = header.record.descriptor.get("version")
+    state = f"out of date: {header.stale} are not this voldetail's; build it again" if header.stale else "current"
+    for label, text in (
+        ("entries", f"{header.entries}, {_size(header.bytes)} on disk"),
+        ("descriptor", f"version {version}, {header.record.descriptor_sha256[:12]}"),
+        ("weights", f"w_global {header.w_global:g}"),
+        ("library", f"{header.sha256[:12]}, {state}"),
+        ("index", "there" if (library / "index").is_file() else "none"),
+    ):
+        output().print(f"{label + ':':12}{text}", markup=False, soft_wrap=True)
+    if check:
+        _check(header)
+        output().print("checked:    every number is the one that was written.", markup=False)
+
+
+def sources_of(what: list[str], sampling: str, seed: int) -> list[Source]:
+    """Return the sources that words on the command line stand for: the one place where names become sources."""
+    from voldetail.library.source import StructureSource
+    from voldetail.texture.structures import MODELS
+
+    if sampling not in SAMPLINGS:
+        raise InputError(f"--sampling {sampling!r} is not known; allowed: random, grid.")
+    names: list[str] = []
+    for word in what:
+        name = word.replace("-", " ")  # as a shell likes the name "cellular grid"
+        if name != ALL and name not in MODELS:
+            known = [model.replace(" ", "-") for model in MODELS]
+            raise InputError(f"There is no model {word!r}; {nearest(word, [*known, ALL])}. Known: {', '.join(known)}, all.")
+        names += list(MODELS) if name == ALL else [name]
+    return [StructureSource(MODELS[name], seed, "grid" if sampling == "grid" else "random") for name in dict.fromkeys(names)]
+
+
+def _counts(sources: list[Source], count: int | None) -> list[int]:
+    grids = [getattr(source, "most", None) for source in sources]
+    if count is None and None in grids:
+        raise InputError("The number of entries is missing; give --entries, e.g. --entries 1000 for a first try.")
+    if count is not None and any(grids):
+        raise InputError("A grid is built whole and has its own number of entries; leave out --entries, or --sampling grid.")
+    return [count or most or 0 for most in grids]
+
+
+def _check_room(out: Path, needed: int, part: Path) -> None:
+    """Raise InputError where a library and, while it is built, its chunks have no room."""
+    there = sum(path.stat().st_size for path in part.rglob("*.chunk")) if part.is_dir() else 0
+    try:
+        usage = shutil.disk_usage(out.parent)
+    except OSError:
+        return
+    if usage.total > 0 and usage.free < 2 * needed - there:
+        raise InputError(
+            f"Cannot build {out}: {_size(2 * needed - there)} are needed there while building and {_size(usage.free)} are free; "
+            "free some space, give fewer --entries or another disk."
+        )
+
+
+def _current(name: str, record: SourceRecord) -> str:
+    """Whether the entries are those that this voldetail would make."""
+    from voldetail.library.source import StructureSource
+    from voldetail.library.vectors import COMPLETE_SIDE
+    from voldetail.texture.structures import MODELS
+
+    side = record.definition.get("side")
+    if record.definition.get("kind") != "structure" or name not in MODELS or not isinstance(side, int):
+        return "not known here"
+    grid = record.definition.get("sampling") == "grid"
+    now = StructureSource(MODELS[name], record.seed, "grid" if grid else "random", max(side, COMPLETE_SIDE))
+    return "yes" if record.definition == now.definition else "no, another model"
+
+
+def _check(header: Header) -> None:
+    from voldetail.cli.progress import LINE_SECONDS, ProgressView
+    from voldetail.library.check import check
+    from voldetail.library.store import open_library
+
+    with ProgressView(remarks()) as view:
+        last = view.clock()
+
+        def tell(entries: int) -> None:
+            nonlocal last
+            if view.live is not None or view.clock() - last >= LINE_SECONDS:
+                last = view.clock()
+                view.step(f"checking: {entries} of {header.entries} entries")
+
+        check(open_library(header.path), tell)
+
+
+def _index(path: Path) -> None:
+    from voldetail.cli.progress import ProgressView
+    from voldetail.library.index import write_index
+    from voldetail.library.store import open_library
+
+    library = open_library(path)
+    with ProgressView(remarks()) as view:
+        view.step("making the index")
+        total = library.header.entries
+        made = write_index(library, lambda done: view.step(f"making the index: {done} of {total} entries"))
+    output().print(f"{made}  {_size(made.stat().st_size)}", markup=False, soft_wrap=True)
+
+
+def _teller(view: ProgressView, last: list[BuildProgress]) -> Callable[[BuildProgress], None]:
+    """Return what shows how far a build is, always on a terminal, else now and then, and leaves the newest in ``last``."""
+    from voldetail.cli.progress import LINE_SECONDS
+    from voldetail.report.facts import duration
+
+    told = view.clock()
+
+    def tell(progress: BuildProgress) -> None:
+        nonlocal told
+        first = not last
+        last[:] = [progress]
+        if first and progress.done:
+            view.step(f"going on after {progress.done} of {progress.total} entries")
+        if view.live is None and view.clock() - told < LINE_SECONDS:
+            return
+        told = view.clock()
+        left = progress.seconds_left
+        time_left = f", about {duration(left)} left" if left is not None else ""
+        view.step(f"{progress.stage}: {progress.done} of {progress.total} entries{time_left}")
+
+    return tell
+
+
+def _size(count: float) -> str:
+    """Bytes in words."""
+    for unit in ("bytes", "kB", "MB"):
+        if count < 1000:
+            return f"{count:.3g} {unit}"
+        count /= 1000
+    return f"{count:.3g} GB"
