@@ -11,6 +11,7 @@ from voldetail.cli.bake_command import bake
 from voldetail.cli.compare_command import compare
 from voldetail.cli.fit_command import fit
 from voldetail.cli.render_command import relight, render
+from voldetail.cli.retrieve_command import retrieve
 from voldetail.cli.show_command import schema, show
 from voldetail.cli.stationarize_command import stationarity, stationarize
 from voldetail.cli.texture_command import texture_app
@@ -26,7 +27,7 @@ app = typer.Typer(
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (fit, render, relight, bake, compare, stationarize, stationarity, show, schema):
+for command in (fit, render, relight, bake, compare, stationarize, stationarity, retrieve, show, schema):
     app.command()(command)
 app.add_typer(texture_app)
 
