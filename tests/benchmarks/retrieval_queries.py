@@ -23,6 +23,9 @@ QUERY_SEED = 1
 
 NOISE = 0.05
 JPEG_QUALITY = 50
+CATEGORIES = {"kind", "phase", "arrangement"}
+"""Parameters whose numbers are names: another one is as far as the whole range."""
+
 LEAST_CONTRAST = 0.3
 """Luminance by which the two random tones of a coloured query differ, at least."""
 
@@ -97,3 +100,12 @@ def shares(model: StructureModel, values: NDArray[np.float64]) -> NDArray[np.flo
         else:
             columns.append((column - p.lower) / (p.upper - p.lower))
     return np.stack(columns, axis=1)
+
+
+def gaps(model: StructureModel, stored: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray[np.float64]:
+    """|difference| of shares (entries, parameters); of categories 0 or 1."""
+    found = np.abs(stored - wanted)
+    for column, parameter in enumerate(model.parameters):
+        if parameter.key in CATEGORIES:
+            found[:, column] = found[:, column] > 0
+    return found

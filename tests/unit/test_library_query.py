@@ -62,7 +62,9 @@ def test_a_zone_is_a_crop_and_what_a_mask_leaves_out_does_not_count(groups: dict
     assert not np.array_equal(query(other, scale=0.6).vector, query(other, mask, scale=0.6).vector)
 
 
-@pytest.mark.parametrize(("name", "entry", "steps", "swap"), [("brick", 3, 3, False), ("rings", 5, 13, True), ("grid", 1, 6, True)])
+@pytest.mark.parametrize(
+    ("name", "entry", "steps", "swap"), [("brick", 3, 3, False), ("rings", 5, 13, True), ("grid", 1, 6, True)]
+)
 def test_a_known_picture_is_found_and_its_answer_is_that_picture(
     groups: dict[str, Group], name: str, entry: int, steps: int, swap: bool
 ) -> None:
@@ -71,7 +73,6 @@ def test_a_known_picture_is_found_and_its_answer_is_that_picture(
     found = rank(groups, asked.vector, 5, tones=(asked.tones.dark, asked.tones.bright))
     best = found.answers[0]
     assert (best.model, best.entry, best.swapped) == (name, entry, swap)
-    # A grid may be turned by a right angle, as a rule it is not the same.
     assert best.rotation == pytest.approx(steps * np.pi / 16)
     np.testing.assert_allclose(best.zero, BRIGHT if swap else DARK, atol=1e-3)
     made, shown = to_srgb(picture(best, SIDE)), to_srgb(photo)
