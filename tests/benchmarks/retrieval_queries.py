@@ -45,7 +45,7 @@ def _noisy(s: Array, rng: np.random.Generator) -> Array:
 def _compressed(s: Array, rng: np.random.Generator) -> Array:
     buffer = BytesIO()
     Image.fromarray(np.rint(255 * s).astype(np.uint8)).save(buffer, format="JPEG", quality=JPEG_QUALITY)
-    return np.asarray(Image.open(buffer), np.float32) / 255
+    return np.divide(np.asarray(Image.open(buffer)), 255, dtype=np.float32)
 
 
 def _coloured(s: Array, rng: np.random.Generator) -> Array:

@@ -8,6 +8,8 @@ import pytest
 from PIL import Image
 
 from voldetail.cli import main, retrieve_command
+from voldetail.detail import StructureTexture
+from voldetail.detail.texture_file import load_texture
 from voldetail.image import save_png
 from voldetail.library import entries, recolour, table
 from voldetail.library.groups import Group, Groups
@@ -55,6 +57,31 @@ def test_a_known_wall_is_found(photo: Path, tmp_path: Path, capsys: pytest.Captu
     assert main(["retrieve", str(photo), "--model", "perlin", "--no-rotation", "--no-swap", "--json", str(answers)]) == 0
     found = json.loads(answers.read_text())
     assert {(a["model"], a["rotation"], a["swapped"]) for a in found["answers"]} == {("perlin", 0.0, False)}
+
+
+def test_an_answer_is_a_texture_for_any_shape(photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    texture, out = tmp_path / "wall.json", tmp_path / "out.png"
+    assert main(["retrieve", str(photo), "--texture", str(texture)]) == 0
+    found = load_texture(texture)
+    assert isinstance(found, StructureTexture)
+    assert (found.model, found.texels, found.photo) == ("brick", (128, 128), "photo.png")
+    assert found.rotation == pytest.approx(np.pi / 4)
+    np.testing.assert_allclose([found.zero, found.one], [BRIGHT, DARK], atol=0.01)
+    # The picture's middle is the structure's origin; the texture's is its lower left texel.
+    assert main(["texture", "render", str(texture), "-o", str(out), "--size", "128x128", "--offset=-63.5,-63.5"]) == 0
+    with Image.open(out) as made, Image.open(photo) as shown:
+        a, b = (np.asarray(p.convert("RGB"), float).ravel() for p in (made, shown))
+    assert np.corrcoef(a, b)[0, 1] > 0.99
+    assert main(["texture", "render", str(texture), "-o", str(out), "--size", "64x64", "--on", "sphere"]) == 0
+    with Image.open(out) as made:
+        pixels = np.asarray(made.convert("RGB"), float)
+    assert pixels[16:48, 16:48].std(axis=(0, 1)).max() > 15
+    capsys.readouterr()
+    assert main(["texture", "edit", str(texture), "-o", str(out)]) == 2
+    assert "has no bands" in capsys.readouterr().err
+    texture.write_text(texture.read_text().replace('"brick"', '"clinker"'))
+    assert main(["texture", "render", str(texture), "-o", str(out)]) == 2
+    assert "'clinker', which is not known" in capsys.readouterr().err
 
 
 def test_a_zone_a_mask_and_a_scale(photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

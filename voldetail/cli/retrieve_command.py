@@ -48,6 +48,9 @@ def retrieve(
     swap: Annotated[bool, typer.Option("--swap/--no-swap", help="Whether the two tones may change places.")] = True,
     sheet: Annotated[Path | None, typer.Option("--output", "-o", help="A sheet of the photo and the answers, .png.")] = None,
     as_json: Annotated[Path | None, typer.Option("--json", help="The answers as JSON.")] = None,
+    texture: Annotated[
+        Path | None, typer.Option(help="The first answer as a texture file, .json, for texture render.")
+    ] = None,
 ) -> None:
     """Find the procedural textures nearest to a photo, with their parameters and two tones.
 
@@ -56,7 +59,7 @@ def retrieve(
     """
     from voldetail.library import rank
 
-    for path, suffix in ((sheet, ".png"), (as_json, ".json")):
+    for path, suffix in ((sheet, ".png"), (as_json, ".json"), (texture, ".json")):
         if path is not None:
             if path.suffix.lower() != suffix:
                 raise InputError(f"Cannot write {path}: give a name that ends in {suffix}.")
@@ -71,6 +74,12 @@ def retrieve(
         from voldetail.files import write_text
 
         write_text(as_json, json.dumps(_record(photo, asked, found), indent=2) + "\n")
+    if texture is not None:
+        from voldetail.detail.texture_file import save_texture
+        from voldetail.library import texture_of
+
+        name = photo_path(photo)
+        save_texture(texture, texture_of(found.answers[0], (asked.photo.shape[0], asked.photo.shape[1]), name.name))
     if sheet is not None:
         _write_sheet(sheet, photo, asked, found.answers)
 

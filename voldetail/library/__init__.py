@@ -1,6 +1,6 @@
 """Libraries of procedural textures, searched by a photo's descriptor: parameters retrieved, not optimised (GKHF14)."""
 
-from voldetail.library.answers import Answer, Ranking, picture, rank, structure_map
+from voldetail.library.answers import Answer, Ranking, picture, rank, structure_map, texture_of
 from voldetail.library.compare import Match, distance, nearest
 from voldetail.library.entries import Entries, entries, entry, grid_values, random_values
 from voldetail.library.query import Query, query
@@ -11,5 +11,5 @@ from voldetail.library.vectors import published_w_global, swapped, turned, vecto
 __all__ = [
     "Answer", "Entries", "Match", "Query", "Ranking", "Table", "TwoTone", "distance", "entries", "entry", "grid_values",
     "nearest", "picture", "published_w_global", "query", "random_values", "rank", "recolour", "structure_map", "swapped",
-    "table", "turned", "two_tone", "vector_of", "weights",
+    "table", "texture_of", "turned", "two_tone", "vector_of", "weights",
 ]  # fmt: skip

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from voldetail.detail import StructureTexture
 from voldetail.errors import InputError
 from voldetail.library.compare import nearest
 from voldetail.library.entries import SIDE
@@ -82,6 +83,20 @@ def structure_map(answer: Answer, size: int | tuple[int, int] = SIDE) -> Array:
     if answer.model not in MODELS:
         raise InputError(f"{answer.model!r} is no structure model and has no picture of this kind.")
     return structure(MODELS[answer.model], answer.parameters, size, rotation=answer.rotation, seed=answer.seed)
+
+
+def texture_of(answer: Answer, size: tuple[int, int] = (SIDE, SIDE), photo: str = "") -> StructureTexture:
+    """Return an answer as a colour texture, for any surface: model, parameters, seed, turn and tones.
+
+    size: rows and columns of the photo as it was compared, so that a texel is a pixel of it; photo: its file's name. Raises
+    InputError for an answer that is no structure model's.
+    """
+    if answer.model not in MODELS:
+        raise InputError(f"{answer.model!r} is no structure model and makes no texture of this kind.")
+    return StructureTexture(
+        name=answer.model, model=answer.model, parameters=dict(answer.parameters), seed=answer.seed, rotation=answer.rotation,
+        zero=answer.zero, one=answer.one, texels=(size[1], size[0]), photo=photo[:400],
+    )  # fmt: skip
 
 
 def _answers(
