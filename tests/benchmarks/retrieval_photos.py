@@ -9,6 +9,7 @@ from pathlib import Path
 from tests.benchmarks.relit import SHARED
 from voldetail.image import load_photo
 from voldetail.library import Query, query
+from voldetail.library.query import TRIM
 
 SKIMAGE, POLY, DUION, PETRY = (
     "CC0, scikit-image", "CC0, Poly Haven and ambientCG", "CC-BY 3.0, Christian Femmer aka Duion", "MIT, Christian Petry",
@@ -87,6 +88,6 @@ def there() -> list[Sought]:
     return [sought for sought in SOUGHT if where(sought).exists()]
 
 
-def ready(sought: Sought, trim: float = 0.0) -> Query:
+def ready(sought: Sought, trim: float = TRIM) -> Query:
     """The photograph as it is looked for."""
     return query(load_photo(where(sought)).pixels, zone=sought.zone, trim=trim)

@@ -13,6 +13,7 @@ from PIL import Image
 from voldetail.image import to_linear, to_srgb
 from voldetail.library import random_values, recolour, two_tone, vector_of
 from voldetail.library.entries import SIDE
+from voldetail.library.query import TRIM
 from voldetail.texture.structures import MODELS, StructureModel, structure
 
 Array = NDArray[np.float32]
@@ -49,7 +50,7 @@ def _compressed(s: Array, rng: np.random.Generator) -> Array:
 
 
 def _coloured(s: Array, rng: np.random.Generator) -> Array:
-    """In two random tones and eight bits, read back as a photo is: extremes become 0 and 1."""
+    """In two random tones and eight bits, read back as a photo is: its extremes become 0 and 1."""
     while True:
         tones = rng.random((2, 3))
         light = tones @ (0.2126, 0.7152, 0.0722)
@@ -57,7 +58,7 @@ def _coloured(s: Array, rng: np.random.Generator) -> Array:
             break
     dark, bright = tones[np.argsort(light)]
     stored = np.rint(255 * to_srgb(recolour(s, dark, bright))) / 255
-    return two_tone(to_linear(stored)).structure
+    return two_tone(to_linear(stored), trim=TRIM).structure
 
 
 CHANGES: dict[str, Change | None] = {

@@ -7,7 +7,7 @@ import pytest
 
 from voldetail.errors import InputError
 from voldetail.image import resize, to_srgb
-from voldetail.library import entries, picture, query, rank, recolour, table
+from voldetail.library import entries, familiarity, picture, query, rank, recolour, table, vector_of
 from voldetail.library.groups import Group
 from voldetail.library.query import ALL_SCALES_SIDE
 from voldetail.texture.structures import MODELS, structure
@@ -69,7 +69,7 @@ def test_a_known_picture_is_found_and_its_answer_is_that_picture(
     groups: dict[str, Group], name: str, entry: int, steps: int, swap: bool
 ) -> None:
     photo = photo_of(groups[name], entry, steps, swap)
-    asked = query(photo)
+    asked = query(photo, trim=0.0)
     found = rank(groups, asked.vector, 5, tones=(asked.tones.dark, asked.tones.bright))
     best = found.answers[0]
     assert (best.model, best.entry, best.swapped) == (name, entry, swap)
@@ -81,6 +81,17 @@ def test_a_known_picture_is_found_and_its_answer_is_that_picture(
     assert np.abs(made - shown).mean() < 0.05
     mirrored = replace(best, rotation=np.pi - best.rotation)
     assert np.corrcoef(to_srgb(picture(mirrored, SIDE)).ravel(), shown.ravel())[0, 1] < 0.9
+
+
+def test_specks_do_not_decide_on_the_tones(groups: dict[str, Group]) -> None:
+    photo = 0.3 + 0.4 * photo_of(groups["brick"], 3)
+    plain = query(photo)
+    photo[::16, ::16] = 0.0
+    photo[8::16, 8::16] = 1.0
+    specked = query(photo)
+    assert np.abs(specked.tones.dark - plain.tones.dark).max() < 0.05
+    assert np.abs(specked.tones.bright - plain.tones.bright).max() < 0.07
+    assert query(photo, trim=0.0).tones.dark[0] < 0.05
 
 
 def test_answers_over_all_models_are_the_nearest_of_each_model_together(groups: dict[str, Group]) -> None:
@@ -98,6 +109,30 @@ def test_answers_over_all_models_are_the_nearest_of_each_model_together(groups: 
     assert {(a.rotation, a.swapped) for a in still.answers} == {(0.0, False)}
     nearer = {(a.model, a.entry): a.distance for a in rank(groups, asked.vector, 36).answers}
     assert all(nearer[a.model, a.entry] <= a.distance + 1e-9 for a in still.answers)
+
+
+def test_a_stranger_is_told_from_a_picture_of_the_model(groups: dict[str, Group]) -> None:
+    own = structure(MODELS["brick"], {"length": 40.0, "height": 17.0, "mortar": 0.2}, SIDE, seed=77)
+    noise = np.random.default_rng(0).random((SIDE, SIDE)).astype(np.float32)
+    told = []
+    for s in (own, noise):
+        best = rank({"brick": groups["brick"]}, vector_of(s), 1).answers[0]
+        found = familiarity(groups["brick"], best, side=SIDE)
+        assert found is not None
+        assert found.distance == best.distance
+        assert found.known == (not found.sentence)
+        told.append(found)
+    assert told[0].known
+    assert not told[1].known
+    assert f"{told[1].distance:.3f} away" in told[1].sentence
+    # The yardstick is of the model and the library, and not of what is asked for.
+    assert told[0].farthest == told[1].farthest
+    assert familiarity(groups["brick"], replace(best, model="relief")) is None
+    # Three entries are a coarser library, in which pictures are farther from their nearest.
+    few = replace(groups["brick"], values=groups["brick"].values[:3], table=table(groups["brick"].table.vectors[:3]))
+    coarse = familiarity(few, best, side=SIDE)
+    assert coarse is not None
+    assert coarse.farthest > told[0].farthest
 
 
 def test_refusals(groups: dict[str, Group]) -> None:

@@ -19,7 +19,7 @@ from voldetail.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from voldetail.library import Answer, Query, Ranking
+    from voldetail.library import Answer, Familiarity, Query, Ranking
     from voldetail.library.groups import Groups
 
 MOST_ANSWERS = 100
@@ -57,7 +57,7 @@ def retrieve(
     Nothing is optimised: the photo's descriptor is compared with those of a library. A structure is of the same size as the
     photo's only where the photo is compared at a size that the library knows; see --scale.
     """
-    from voldetail.library import rank
+    from voldetail.library import familiarity, rank
 
     for path, suffix in ((sheet, ".png"), (as_json, ".json"), (texture, ".json")):
         if path is not None:
@@ -69,11 +69,15 @@ def retrieve(
     found = rank(
         groups, asked.vector, top, tones=(asked.tones.dark, asked.tones.bright), rotations=rotation, swap=swap
     )  # fmt: skip
-    _print(found, asked)
+    first = found.answers[0]
+    with remarks().status(f"comparing with other pictures of {first.model}"):
+        familiar = familiarity(groups[first.model], first, rotations=rotation, swap=swap)
+    said = _remarks(asked, familiar)
+    _print(found, asked, said)
     if as_json is not None:
         from voldetail.files import write_text
 
-        write_text(as_json, json.dumps(_record(photo, asked, found), indent=2) + "\n")
+        write_text(as_json, json.dumps(_record(photo, asked, found, familiar, said), indent=2) + "\n")
     if texture is not None:
         from voldetail.detail.texture_file import save_texture
         from voldetail.library import texture_of
@@ -127,7 +131,7 @@ def _query(photo: str, mask: Path | None, zone: str | None, scale: float | None)
     return query(loaded.pixels, used, zone=part, scale=scale)
 
 
-def _print(found: Ranking, asked: Query) -> None:
+def _print(found: Ranking, asked: Query, said: list[str]) -> None:
     rows, columns = asked.photo.shape[:2]
     say = output()
     say.print(_table([(str(k + 1), answer) for k, answer in enumerate(found.answers)], "rank"))
@@ -139,18 +143,18 @@ def _print(found: Ranking, asked: Query) -> None:
         f"Compared at {columns} x {rows} pixels; two tones explain {asked.tones.explained:.0%} of the colours' variance.",
         markup=False, soft_wrap=True,
     )  # fmt: skip
-    for sentence in remarks_on(asked, found):
+    for sentence in said:
         remarks().print(sentence, markup=False, soft_wrap=True)
 
 
-def remarks_on(asked: Query, found: Ranking) -> list[str]:
-    """Return what a reader of the answers has to know, a sentence each."""
-    said = [asked.tones.poor] if asked.tones.poor else []
+def _remarks(asked: Query, familiar: Familiarity | None) -> list[str]:
+    """What a reader of the answers has to know, a sentence each."""
+    said = [familiar.sentence if familiar else "", asked.tones.poor]
     if asked.missing:
         said.append(
             f"The photo is too small for the coarsest {asked.missing} of six scales, so nothing of that size was compared."
         )
-    return said
+    return [sentence for sentence in said if sentence]
 
 
 def _table(rows: Sequence[tuple[str, Answer]], heading: str) -> Table:
@@ -165,13 +169,17 @@ def _table(rows: Sequence[tuple[str, Answer]], heading: str) -> Table:
     return table
 
 
-def _record(photo: str, asked: Query, found: Ranking) -> dict[str, Any]:
+def _record(
+    photo: str, asked: Query, found: Ranking, familiar: Familiarity | None, said: list[str]
+) -> dict[str, Any]:
     """The answers as what JSON holds."""
     rows, columns = asked.photo.shape[:2]
     return {
         "photo": photo, "pixels": [columns, rows], "scale": asked.scale, "explained": asked.tones.explained,
         "dark": asked.tones.dark.tolist(), "bright": asked.tones.bright.tolist(), "scales_missing": asked.missing,
-        "remarks": remarks_on(asked, found),
+        "known": None if familiar is None else familiar.known,
+        "farthest_of_its_model": None if familiar is None else familiar.farthest,
+        "remarks": said,
         "answers": [_answer(answer) for answer in found.answers],
         "best_of_each": {name: _answer(answers[0]) for name, answers in found.by_model.items()},
     }  # fmt: skip

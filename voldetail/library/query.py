@@ -22,6 +22,10 @@ from voldetail.texture.analysis import pixels_of
 Array = NDArray[np.float32]
 Zone = tuple[int, int, int, int]
 
+TRIM = 0.005
+"""Share of a photo's pixels, at either end, that may lie beyond its tones. The paper takes the extreme pixels; a speck then
+leaves the rest a contrast that no entry has, and sand becomes streaks. Tuned on 34 photographs, see results/retrieval."""
+
 LARGEST_SIDE = 2048
 """Pixels of a photo that is described: seconds and some hundred MB."""
 
@@ -47,14 +51,14 @@ class Query:
 
 
 def query(
-    photo: ArrayLike, mask: ArrayLike | None = None, *, zone: Zone | None = None, scale: float | None = None, trim: float = 0.0
+    photo: ArrayLike, mask: ArrayLike | None = None, *, zone: Zone | None = None, scale: float | None = None, trim: float = TRIM
 ) -> Query:
     """Return ``photo`` (H, W, 3) or (H, W), linear light, made ready.
 
     mask: (H, W), True = use. zone: x, y, width, height in pixels of the part to use, by default all. scale: what that part is
-    resized by, over 0; by default its longer side becomes 256 pixels, and a smaller photo keeps its size. trim: see
-    `two_tone`. Raises InputError for a zone outside the photo, a result under 32 or over 2048 pixels a side, and whatever
-    `two_tone` and `vector_of` refuse.
+    resized by, over 0; by default its longer side becomes 256 pixels, and a smaller photo keeps its size. trim: see `two_tone`;
+    by default half a percent. Raises InputError for a zone outside the photo, a result under 32 or over 2048 pixels a side, and
+    whatever `two_tone` and `vector_of` refuse.
     """
     pixels = pixels_of(photo)
     used = np.ones(pixels.shape[:2], bool) if mask is None else np.asarray(mask).astype(bool)
