@@ -8,11 +8,15 @@ import numpy as np
 import pytest
 
 from voldetail.apply import painted
+from voldetail.backend import mitsuba
 from voldetail.detail import Detail, StructureTexture, detail_from_text, detail_to_text, summary
 from voldetail.detail.texture_file import load_example, load_texture, save_texture, texture_from_text, texture_to_text
 from voldetail.errors import InputError
 from voldetail.image import to_srgb
 from voldetail.library import recolour
+from voldetail.scene.colour_plugin import colour_dict
+from voldetail.scene.pigment import coloured as pigment
+from voldetail.scene.pigment import factors_of
 from voldetail.texture import colour_at, picture
 from voldetail.texture.picture import default_float
 from voldetail.texture.structures import MODELS, checked_structure, structure
@@ -68,6 +72,27 @@ def test_a_surface_sees_the_plane_at_right_angles_to_its_normal() -> None:
     assert (between <= np.maximum(ZERO, ONE) + 1e-3).all()
     # Of three equally seen planes the mean: a third of the variance.
     assert 0.2 < between.var(axis=0).mean() / to_srgb(along_z).var(axis=0).mean() < 0.5
+
+
+@pytest.mark.parametrize("mapping", ["solid", "uv"])
+def test_mitsuba_and_a_detail_on_a_shape_see_the_same_structure(mapping: str) -> None:
+    mi = mitsuba()
+    texture = texture_of("woodplanks")
+    made = mi.load_dict(colour_dict(texture, 90.0, mapping))
+    rng = np.random.default_rng(3)
+    points, normals = rng.uniform(-1, 1, (60, 3)), rng.standard_normal((60, 3))
+    si = mi.SurfaceInteraction3f()
+    si.p, si.uv, si.n = mi.Point3f(*points.T), mi.Point2f(*points[:, :2].T), mi.Normal3f(*normals.T)
+    plane = coloured(texture, 90.0 * points[:, :2], None)
+    expected = plane if mapping == "uv" else coloured(texture, 90.0 * points, normals)
+    np.testing.assert_allclose(np.asarray(made.eval(si)).T, expected, atol=2e-4)
+    assert np.abs(coloured(texture, 90.0 * points, normals) - plane).max() > 0.05
+    detail, facing = painted(texture, 90.0), tuple(si.n)
+    shown = factors_of(pigment(detail, None, tuple(si.p), None, None, scale=1.0, spacing=0.0, normals=facing))
+    solid = coloured(texture, 90.0 * points, normals)
+    np.testing.assert_allclose(np.stack([np.asarray(v) for v in shown], axis=1), solid, atol=2e-4)
+    with pytest.raises(InputError, match="'clinker', which is not known"):
+        colour_dict(texture.model_copy(update={"model": "clinker"}), 90.0, mapping)
 
 
 def test_a_file_comes_back(tmp_path: Path) -> None:

@@ -34,7 +34,10 @@ def register_colour() -> str:
 def colour_dict(
     texture: Texture, texels_per_unit: float, mapping: str = "solid", footprint: float = 0.0
 ) -> dict[str, Any]:
-    """Return the Mitsuba dictionary of a texture at hand. Raises InputError for another mapping."""
+    """Return the Mitsuba dictionary of a texture at hand. Raises InputError for another mapping, and for a structure whose model
+    or parameters are not known or out of range."""
+    if isinstance(texture, StructureTexture):
+        checked_structure(texture, "The texture")
     if mapping not in MAPPINGS:
         raise InputError(f"The mapping {mapping!r} is not known; use {' or '.join(MAPPINGS)}.")
     return {
