@@ -27,7 +27,7 @@ from tests.benchmarks.rivals.heeger_bergen import synthesise
 from voldetail.detail.colour import ColourTexture
 from voldetail.files import write_text
 from voldetail.image import to_linear, to_srgb
-from voldetail.texture import analyse, load_texture, picture, save_texture
+from voldetail.texture import analyse, load_example, picture, save_texture
 
 LARGER, EDITED = "rock_weathered", "stone_slab"
 MORPHED = ("stone_slab", "veined_rock")
@@ -134,7 +134,7 @@ def overview(output: Path, records: Sequence[dict[str, Any]]) -> None:
 
 def extras(output: Path, again: bool) -> None:
     """Write what only a formula can give, where the textures that it needs are there."""
-    textures = {path.stem: load_texture(path) for path in sorted((output / "textures").glob("*.json"))}
+    textures = {path.stem: load_example(path) for path in sorted((output / "textures").glob("*.json"))}
     needs = {"larger": (LARGER,), "morph": MORPHED, "edit": (EDITED,), "solid": CARVED}
     for name, wanted in needs.items():
         path = output / f"{name}.png"

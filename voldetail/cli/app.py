@@ -12,6 +12,7 @@ from voldetail.cli.compare_command import compare
 from voldetail.cli.fit_command import fit
 from voldetail.cli.library_command import library_app
 from voldetail.cli.render_command import relight, render
+from voldetail.cli.retrieve_command import retrieve
 from voldetail.cli.show_command import schema, show
 from voldetail.cli.stationarize_command import stationarity, stationarize
 from voldetail.cli.texture_command import texture_app
@@ -27,7 +28,7 @@ app = typer.Typer(
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (fit, render, relight, bake, compare, stationarize, stationarity, show, schema):
+for command in (fit, render, relight, bake, compare, stationarize, stationarity, retrieve, show, schema):
     app.command()(command)
 app.add_typer(texture_app)
 app.add_typer(library_app)

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.table import Table
 
+from voldetail.cli.building import size_words, teller
 from voldetail.cli.console import output, remarks
 from voldetail.detail.parameters import nearest
 from voldetail.errors import InputError
 
 if TYPE_CHECKING:
-    from voldetail.cli.progress import ProgressView
     from voldetail.library.build import BuildProgress
     from voldetail.library.layout import SourceRecord
     from voldetail.library.source import Source
@@ -66,10 +65,10 @@ def build(
     check_output(out, force)
     _check_room(out, plan.bytes, part_of(out))
     of = f"{plan.entries} entries of {len(sources)} model{'s' if len(sources) > 1 else ''}"
-    remarks().print(f"{of}, {_size(plan.bytes)} on disk and twice that while building.", markup=False, soft_wrap=True)
+    remarks().print(f"{of}, {size_words(plan.bytes)} on disk and twice that while building.", markup=False, soft_wrap=True)
     last: list[BuildProgress] = []
     with ProgressView(remarks()) as view:
-        tell = _teller(view, last)
+        tell = teller(view, last)
         try:
             made(sources, counts, out, workers=workers, scheduler=scheduler, force=force, on_progress=tell)
         except KeyboardInterrupt:
@@ -84,7 +83,7 @@ def build(
     if end.rate:
         speed = f": {end.rate:.3g} entries a second, a million would take {PROJECTED / end.rate / 3600:.2g} hours here"
     output().print(
-        f"{out}  {plan.entries} entries, {_size(plan.bytes)}, {duration(end.seconds)}{speed}", markup=False, soft_wrap=True
+        f"{out}  {plan.entries} entries, {size_words(plan.bytes)}, {duration(end.seconds)}{speed}", markup=False, soft_wrap=True
     )
     if indexed:
         _index(out)
@@ -115,7 +114,7 @@ def info(
     version = header.record.descriptor.get("version")
     state = f"out of date: {header.stale} are not this voldetail's; build it again" if header.stale else "current"
     for label, text in (
-        ("entries", f"{header.entries}, {_size(header.bytes)} on disk"),
+        ("entries", f"{header.entries}, {size_words(header.bytes)} on disk"),
         ("descriptor", f"version {version}, {header.record.descriptor_sha256[:12]}"),
         ("weights", f"w_global {header.w_global:g}"),
         ("library", f"{header.sha256[:12]}, {state}"),
@@ -162,7 +161,7 @@ def _check_room(out: Path, needed: int, part: Path) -> None:
         return
     if usage.total > 0 and usage.free < 2 * needed - there:
         raise InputError(
-            f"Cannot build {out}: {_size(2 * needed - there)} are needed there while building and {_size(usage.free)} are free; "
+            f"Cannot build {out}: {size_words(2 * needed - there)} are needed there while building and {size_words(usage.free)} are free; "
             "free some space, give fewer --entries or another disk."
         )
 
@@ -208,36 +207,4 @@ def _index(path: Path) -> None:
         view.step("making the index")
         total = library.header.entries
         made = write_index(library, lambda done: view.step(f"making the index: {done} of {total} entries"))
-    output().print(f"{made}  {_size(made.stat().st_size)}", markup=False, soft_wrap=True)
-
-
-def _teller(view: ProgressView, last: list[BuildProgress]) -> Callable[[BuildProgress], None]:
-    """Return what shows how far a build is, always on a terminal, else now and then, and leaves the newest in ``last``."""
-    from voldetail.cli.progress import LINE_SECONDS
-    from voldetail.report.facts import duration
-
-    told = view.clock()
-
-    def tell(progress: BuildProgress) -> None:
-        nonlocal told
-        first = not last
-        last[:] = [progress]
-        if first and progress.done:
-            view.step(f"going on after {progress.done} of {progress.total} entries")
-        if view.live is None and view.clock() - told < LINE_SECONDS:
-            return
-        told = view.clock()
-        left = progress.seconds_left
-        time_left = f", about {duration(left)} left" if left is not None else ""
-        view.step(f"{progress.stage}: {progress.done} of {progress.total} entries{time_left}")
-
-    return tell
-
-
-def _size(count: float) -> str:
-    """Bytes in words."""
-    for unit in ("bytes", "kB", "MB"):
-        if count < 1000:
-            return f"{count:.3g} {unit}"
-        count /= 1000
-    return f"{count:.3g} GB"
+    output().print(f"{made}  {size_words(made.stat().st_size)}", markup=False, soft_wrap=True)

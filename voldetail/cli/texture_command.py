@@ -14,7 +14,7 @@ from voldetail.cli.photo_argument import photo_path
 from voldetail.cli.shape_options import MESH_HELP, shape_of
 from voldetail.cli.threads import use_threads
 from voldetail.detail.refusal import shown
-from voldetail.detail.texture_file import load_texture, save_texture
+from voldetail.detail.texture_file import load_example, load_texture, save_texture
 from voldetail.errors import InputError
 
 MOST_STEPS = 200
@@ -134,7 +134,7 @@ def edit(
     for text in gain or []:
         band, factor = _gain(text)
         gains[band] = gains.get(band, 1.0) * factor
-    save_texture(out, edited(load_texture(texture), gains, contrast=contrast, seed=seed))
+    save_texture(out, edited(load_example(texture), gains, contrast=contrast, seed=seed))
     _say(str(out))
 
 
@@ -155,7 +155,7 @@ def morph(
     from voldetail.texture import picture
 
     check_folder(folder)
-    a, b = load_texture(first), load_texture(last)
+    a, b = load_example(first), load_example(last)
     columns, rows = size(pixels)
     old = sorted([*folder.glob("step_*.png"), *folder.glob("step_*.json")]) if folder.is_dir() else []
     if old and not force:

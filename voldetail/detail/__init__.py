@@ -1,7 +1,8 @@
 """The detail: its parameters, declared once, its frozen record and its versioned file."""
 
-from voldetail.detail.colour import ColourChannel, ColourTexture, DetailColour, Lobe
+from voldetail.detail.colour import ColourChannel, ColourTexture, Lobe
 from voldetail.detail.curves import MONOTONE_CURVES, START_CURVES
+from voldetail.detail.detail_colour import DetailColour
 from voldetail.detail.file import detail_from_text, detail_to_text, load_detail, rounded, save_detail, schema
 from voldetail.detail.parameters import PARAMETERS, Parameter, bounds, help_text, parameter
 from voldetail.detail.record import (
@@ -19,6 +20,7 @@ from voldetail.detail.record import (
     values_of,
     with_values,
 )
+from voldetail.detail.structure_texture import StructureTexture, Texture
 from voldetail.detail.words import describe_in_words, summary
 
 __all__ = [
@@ -40,6 +42,8 @@ __all__ = [
     "Provenance",
     "Reflectance",
     "ReliefParameters",
+    "StructureTexture",
+    "Texture",
     "bounds",
     "describe_in_words",
     "detail_from",

@@ -96,36 +96,3 @@ class ColourTexture(Record):
                 if abs(product - (i == j)) > ORTHONORMAL_TOLERANCE:
                     raise ValueError("the axes are no rotation: each needs length 1, at right angles to the others")
         return self
-
-
-class DetailColour(Record):
-    """The colour of a detail's surface: a factor on what it reflects of the sky and the light's beam.
-
-        Kd tint f(x),    f(x) = gain colour(texels_per_unit x)
-
-    driver: what moves the first channel of the texture: its own noise (by example), the relief's height, the depth of its
-    hollows (height, the other way round), or the cell's own number; the others always have their noise. heights: R at the
-    probabilities of the curve, where it drives.
-    """
-
-    driver: Literal["noise", "height", "hollow", "cell"] = Field(
-        default="noise", description="What moves the most varied channel: noise, the relief's height or hollows, or the cell."
-    )
-    texels_per_unit: float = Field(gt=0, le=1e5, description="Texels of the photo in one scene unit.")
-    gain: tuple[Weight, Weight, Weight] = Field(
-        description="Linear red, green and blue that the texture is multiplied by: one over its mean."
-    )
-    heights: tuple[Annotated[float, Field(ge=0, le=1)], ...] = Field(
-        default=(), max_length=CURVE_SAMPLES, description="The relief's height at the curve's probabilities, where it drives."
-    )
-    texture: ColourTexture = Field(description="The texture.")
-
-    @model_validator(mode="after")
-    def _heights(self) -> DetailColour:
-        driven = self.driver in ("height", "hollow")
-        if len(self.heights) != (CURVE_SAMPLES if driven else 0):
-            wanted = f"{CURVE_SAMPLES} heights" if driven else "no heights"
-            raise ValueError(f"a colour with the driver {self.driver!r} needs {wanted}, and {len(self.heights)} are given")
-        if any(b < a for a, b in zip(self.heights, self.heights[1:], strict=False)):
-            raise ValueError("the heights decrease; each of them has to be at least the one before")
-        return self

@@ -53,6 +53,9 @@ def detail_to_text(detail: Detail) -> str:
     for group in ("medium", "colour"):
         if data[group] is None:
             del data[group]  # most details have none, and a reader is not to wonder about it
+    for kind in ("texture", "structure"):
+        if "colour" in data and data["colour"][kind] is None:
+            del data["colour"][kind]
     try:
         return json_text(data)
     except ValueError:

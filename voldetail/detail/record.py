@@ -12,7 +12,7 @@ from pydantic import (
     model_validator,
 )
 
-from voldetail.detail.colour import DetailColour
+from voldetail.detail.detail_colour import DetailColour
 from voldetail.detail.parameters import PARAMETERS, declared, limits, parameter
 from voldetail.detail.provenance import NoiseFloor, Provenance, Record
 from voldetail.detail.refusal import refusal

@@ -60,7 +60,8 @@ def summary(detail: Detail) -> str:
         parts.append(f"soft over {detail.medium.thickness:.2g}, with an extinction of {detail.medium.extinction:.2g}")
         return ", ".join(parts) + "."
     if detail.colour is not None:
-        parts.append(_COLOURED[detail.colour.driver])
+        structure = detail.colour.structure
+        parts.append(f"coloured by {structure.model} in two tones" if structure is not None else _COLOURED[detail.colour.driver])
     glossy = detail.reflectance.specular > _GLOSSY
     parts.append(f"glossy (shininess {detail.reflectance.shininess:.2g})" if glossy else "matte")
     return ", ".join(parts) + "."

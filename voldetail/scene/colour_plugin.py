@@ -1,4 +1,4 @@
-"""A colour texture by example as a Mitsuba texture, `voldetail_colour`, for any BSDF of any scene.
+"""A colour texture, by example or of a structure, as a Mitsuba texture, `voldetail_colour`, for any BSDF of any scene.
 
     {"type": "voldetail_colour", "filename": "wall.json", "texels_per_unit": 96.0, "mapping": "solid"}
 
@@ -13,10 +13,11 @@ from functools import cache
 from typing import Any
 
 from voldetail.backend import mitsuba
-from voldetail.detail import ColourTexture
+from voldetail.detail import StructureTexture, Texture
 from voldetail.detail.texture_file import texture_from_text, texture_to_text
 from voldetail.errors import InputError
 from voldetail.texture import colour_at, load_texture
+from voldetail.texture.structures import checked_structure
 
 PLUGIN = "voldetail_colour"
 MAPPINGS = ("solid", "uv")
@@ -31,9 +32,12 @@ def register_colour() -> str:
 
 
 def colour_dict(
-    texture: ColourTexture, texels_per_unit: float, mapping: str = "solid", footprint: float = 0.0
+    texture: Texture, texels_per_unit: float, mapping: str = "solid", footprint: float = 0.0
 ) -> dict[str, Any]:
-    """Return the Mitsuba dictionary of a texture at hand. Raises InputError for another mapping."""
+    """Return the Mitsuba dictionary of a texture at hand. Raises InputError for another mapping, and for a structure whose model
+    or parameters are not known or out of range."""
+    if isinstance(texture, StructureTexture):
+        checked_structure(texture, "The texture")
     if mapping not in MAPPINGS:
         raise InputError(f"The mapping {mapping!r} is not known; use {' or '.join(MAPPINGS)}.")
     return {
@@ -46,7 +50,7 @@ def _plugin(mi: Any) -> type:
     """Return the class; Mitsuba's own base class exists only once a variant is set."""
 
     class ProceduralColour(mi.Texture):
-        """A ColourTexture at the points of a surface."""
+        """A Texture at the points of a surface."""
 
         def __init__(self, props: Any) -> None:
             super().__init__(props)
@@ -54,6 +58,8 @@ def _plugin(mi: Any) -> type:
                 self.texture = texture_from_text(props["text"], "The texture")
             else:
                 self.texture = load_texture(props["filename"])
+            if isinstance(self.texture, StructureTexture):
+                checked_structure(self.texture, "The texture")
             self.texels = mi.Float(props.get("texels_per_unit", 1.0))
             self.mapping = props.get("mapping", "solid")
             self.footprint = float(props.get("footprint", 0.0))

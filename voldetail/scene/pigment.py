@@ -47,7 +47,7 @@ def coloured(
         first = 1.0 - first if colour.driver == "hollow" else first
     texels = dr.opaque(float_type, colour.texels_per_unit / scale)
     found = colour_at(
-        colour.texture, tuple(v * texels for v in points), footprint=colour.texels_per_unit / scale * spacing, first=first,
+        colour.source, tuple(v * texels for v in points), footprint=colour.texels_per_unit / scale * spacing, first=first,
         normals=normals,
     )
     out = []

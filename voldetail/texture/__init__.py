@@ -1,6 +1,6 @@
 """Colour textures by example: analysed from one photo, evaluated at any point, edited and morphed."""
 
-from voldetail.detail.texture_file import load_texture, save_texture
+from voldetail.detail.texture_file import load_example, load_texture, save_texture
 from voldetail.texture.analysis import analyse
 from voldetail.texture.curve import CURVE_PROBABILITIES
 from voldetail.texture.edit import band_count, edit, morph
@@ -13,6 +13,7 @@ __all__ = [
     "band_count",
     "colour_at",
     "edit",
+    "load_example",
     "load_texture",
     "morph",
     "picture",

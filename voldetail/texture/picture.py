@@ -8,7 +8,7 @@ import drjit as dr
 import numpy as np
 from numpy.typing import NDArray
 
-from voldetail.detail.colour import ColourTexture
+from voldetail.detail.structure_texture import Texture
 from voldetail.errors import InputError
 from voldetail.texture.synthesis import colour_at
 
@@ -19,7 +19,7 @@ MOST_PIXELS = 1 << 27
 
 
 def picture(
-    texture: ColourTexture,
+    texture: Texture,
     size: tuple[int, int],
     offset: tuple[float, float] = (0.0, 0.0),
     zoom: float = 1.0,

@@ -28,20 +28,17 @@ import drjit as dr
 import numpy as np
 
 from voldetail.detail.colour import ColourTexture
+from voldetail.detail.structure_texture import StructureTexture, Texture
 from voldetail.noise.lobes import LobeTable, lobe_noise, lobe_table
 from voldetail.noise.triplanar import triplanar
 from voldetail.noise.wavelet import held, wavelet_noise
 from voldetail.noise.wavelet_spectrum import variance
 from voldetail.texture.clamping import LARGEST_LOG, SMALLEST_LOG, STEPS, passed_table
+from voldetail.texture.decoding import decoded
 from voldetail.texture.filtered import COLUMNS, FARTHEST, ROWS, filtered_curve
 from voldetail.texture.lobes import lobe_rows
 from voldetail.texture.solid import slice_weights
-
-# IEC 61966-2-1, as in voldetail.image.srgb; here on Dr.Jit arrays and with the second derivative.
-_ENCODED_PIECE_END = 0.04045
-_SLOPE = 12.92
-_OFFSET = 0.055
-_GAMMA = 2.4
+from voldetail.texture.structures.colour import structure_colour
 
 CHANNEL_SALT = 0x7FEB352D
 """Step of the seed from channel to channel of lobes; odd, else arbitrary."""
@@ -54,7 +51,7 @@ LEAST_SHARE = 1e-4
 
 
 def colour_at(
-    texture: ColourTexture, points: tuple[Any, ...], footprint: Any = 0.0, *, first: Any = None,
+    texture: Texture, points: tuple[Any, ...], footprint: Any = 0.0, *, first: Any = None,
     normals: tuple[Any, ...] | None = None,
 ) -> tuple[Any, Any, Any]:
     """Return the linear colour, three Dr.Jit floats in 0 to 1, at ``points`` in texels of the analysed photo.
@@ -64,7 +61,10 @@ def colour_at(
     The photo's own pixels are values at points here: for one pixel a texel give 0. first: in place of the first channel's noise,
     the share of its values that lie below, in (0, 1), an array; it is not clamped. normals: of the surface at 3 coordinates,
     where channels of lobes, which have no solid form, are laid on it from three sides; without them they are seen along z.
+    A two-tone structure is treated so as well; it knows no footprint and no first channel.
     """
+    if isinstance(texture, StructureTexture):
+        return structure_colour(texture, points, normals)
     float_type: Any = type(points[0])
     return evaluator(texture, len(points), float_type).colour(points, footprint, first, normals)
 
@@ -108,7 +108,7 @@ class Evaluator:
             mean = sum(self.axes[c][k] * means[c] for c in range(3))
             if self.encoded:
                 spread = sum(dr.square(self.axes[c][k]) * spreads[c] for c in range(3)) if clamped else None
-                mean = _decoded(mean, spread)
+                mean = decoded(mean, spread)
             colour.append(dr.clip(mean, 0.0, 1.0))
         return colour[0], colour[1], colour[2]
 
@@ -193,12 +193,3 @@ def band_amplitudes(texture: ColourTexture, dims: int) -> Any:
         if deviation > 0:
             found[: len(weights), c] = weights / deviation
     return found
-
-
-def _decoded(encoded: Any, spread: Any) -> Any:
-    """Return the linear value of an sRGB one, or its mean where the sRGB value has the variance ``spread``."""
-    base = dr.maximum((encoded + _OFFSET) * (1.0 / (1.0 + _OFFSET)), 1e-4)
-    power = dr.power(base, _GAMMA)
-    if spread is not None:
-        power = power + spread * dr.power(base, _GAMMA - 2.0) * (0.5 * _GAMMA * (_GAMMA - 1.0) / (1.0 + _OFFSET) ** 2)
-    return dr.select(encoded <= _ENCODED_PIECE_END, dr.maximum(encoded, 0.0) * (1.0 / _SLOPE), power)

@@ -1,20 +1,8 @@
 """Structure models of GKHF14 section 6: two-tone procedural textures without their colours."""
 
-from voldetail.texture.structures.grids import CELLULAR_GRID, GRID
+from voldetail.texture.structures.colour import checked_structure, structure_colour
 from voldetail.texture.structures.model import StructureModel, StructureParameter
-from voldetail.texture.structures.noisy import PERLIN, TURBULENCE, TURBULENCE_RIDGE
+from voldetail.texture.structures.models import MODELS
 from voldetail.texture.structures.picture import structure
-from voldetail.texture.structures.shapes import STAR, SYMBOL
-from voldetail.texture.structures.tiled import BRICK, WOOD_PLANKS
-from voldetail.texture.structures.wood import RINGS, WOOD_LINES, WOOD_STREAKS
 
-MODELS: dict[str, StructureModel] = {
-    model.name: model
-    for model in (
-        PERLIN, TURBULENCE, TURBULENCE_RIDGE, GRID, CELLULAR_GRID, BRICK, WOOD_PLANKS, WOOD_LINES, WOOD_STREAKS, RINGS, STAR,
-        SYMBOL,
-    )
-}  # fmt: skip
-"""The models by name, in the paper's order of classes."""
-
-__all__ = ["MODELS", "StructureModel", "StructureParameter", "structure"]
+__all__ = ["MODELS", "StructureModel", "StructureParameter", "checked_structure", "structure", "structure_colour"]

@@ -1,0 +1,117 @@
+"""The procedural textures nearest to a photo, within each model and over all models (GKHF14 section 5), and their pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from voldetail.detail import StructureTexture
+from voldetail.errors import InputError
+from voldetail.library.compare import nearest
+from voldetail.library.entries import SIDE
+from voldetail.library.groups import Group, Groups
+from voldetail.library.two_tone import recolour
+from voldetail.texture.structures import MODELS, structure
+
+Array = NDArray[np.float32]
+Tone = tuple[float, float, float]
+
+BLACK: Tone = (0.0, 0.0, 0.0)
+WHITE: Tone = (1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """An entry that is near a photo.
+
+    model, entry, seed, parameters: what makes the entry's structure map s. rotation: radians by which it has to be turned,
+    counter-clockwise, 0 to pi. swapped: whether the roles of the tones are exchanged. distance: D (equation 6). zero, one:
+    the tones, sRGB-encoded, of s = 0 and s = 1, exchanged already where ``swapped``.
+    """
+
+    model: str
+    entry: int
+    seed: int
+    parameters: Mapping[str, float]
+    rotation: float
+    swapped: bool
+    distance: float
+    zero: Tone = BLACK
+    one: Tone = WHITE
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """Answers over all models, nearest first, and those of each model."""
+
+    answers: tuple[Answer, ...]
+    by_model: Mapping[str, tuple[Answer, ...]]
+
+
+def rank(
+    groups: Groups, vector: ArrayLike, top: int = 8, *, tones: tuple[ArrayLike, ArrayLike] | None = None,
+    rotations: bool = True, swap: bool = True,
+) -> Ranking:
+    """Return the ``top`` entries nearest to the descriptor ``vector`` (750,) in each of ``groups`` and in all of them.
+
+    Models are compared by D itself. tones: of the photo, the darker first, sRGB-encoded; by default black and white.
+    rotations, swap: False compares structures as they lie, and tones in their order. Entries of equal distance are in the
+    order of the groups. Raises InputError for no group and what `compare.nearest` refuses.
+    """
+    if not groups:
+        raise InputError("There is no model to look in; name one, or build a library with one.")
+    dark, bright = (BLACK, WHITE) if tones is None else (_tone(tones[0]), _tone(tones[1]))
+    found = {name: _answers(group, vector, top, dark, bright, rotations, swap) for name, group in groups.items()}
+    every = sorted((a for answers in found.values() for a in answers), key=lambda answer: answer.distance)
+    return Ranking(tuple(every[:top]), found)
+
+
+def picture(answer: Answer, size: int | tuple[int, int] = SIDE) -> Array:
+    """Return the picture (H, W, 3), linear, of an answer in its tones, turned and swapped as found; row 0 on top.
+
+    size: pixels a side, or (rows, columns). It shows the entry's own noise, so the library's pixels are a crop of it.
+    Raises InputError for an answer that is no structure model's.
+    """
+    return recolour(structure_map(answer, size), answer.zero, answer.one)
+
+
+def structure_map(answer: Answer, size: int | tuple[int, int] = SIDE) -> Array:
+    """Return the structure map s (H, W) of an answer, turned as found; its tones are not swapped. See `picture`."""
+    if answer.model not in MODELS:
+        raise InputError(f"{answer.model!r} is no structure model and has no picture of this kind.")
+    return structure(MODELS[answer.model], answer.parameters, size, rotation=answer.rotation, seed=answer.seed)
+
+
+def texture_of(answer: Answer, size: tuple[int, int] = (SIDE, SIDE), photo: str = "") -> StructureTexture:
+    """Return an answer as a colour texture, for any surface: model, parameters, seed, turn and tones.
+
+    size: rows and columns of the photo as it was compared, so that a texel is a pixel of it; photo: its file's name. Raises
+    InputError for an answer that is no structure model's.
+    """
+    if answer.model not in MODELS:
+        raise InputError(f"{answer.model!r} is no structure model and makes no texture of this kind.")
+    return StructureTexture(
+        name=answer.model, model=answer.model, parameters=dict(answer.parameters), seed=answer.seed, rotation=answer.rotation,
+        zero=answer.zero, one=answer.one, texels=(size[1], size[0]), photo=photo[:400],
+    )  # fmt: skip
+
+
+def _answers(
+    group: Group, vector: ArrayLike, top: int, dark: Tone, bright: Tone, rotations: bool, swap: bool
+) -> tuple[Answer, ...]:
+    count = min(top, len(group.values))
+    return tuple(
+        Answer(
+            group.model, match.entry, group.seed, group.parameters(match.entry), match.rotation, match.swapped, match.distance,
+            *((bright, dark) if match.swapped else (dark, bright)),
+        )
+        for match in nearest(group.table, vector, max(count, min(top, 1)), rotations=rotations, swap=swap)
+    )  # fmt: skip
+
+
+def _tone(tone: ArrayLike) -> Tone:
+    red, green, blue = (float(v) for v in np.asarray(tone, np.float64))
+    return red, green, blue
