@@ -20,6 +20,7 @@ from tests.benchmarks.retrieval import NAMES, Array, library, mixtures
 from voldetail.library import nearest, open_library, random_values, vector_of
 from voldetail.library.build import build
 from voldetail.library.index import nearest_by_index, open_index, write_index
+from voldetail.library.measures import MeasureName
 from voldetail.library.source import Chunk
 from voldetail.texture.structures import MODELS, structure
 
@@ -37,6 +38,7 @@ class Mixtures:
     name: str = "mixtures"
     keys: tuple[str, ...] = ("number",)
     seed: int = 0
+    measure: MeasureName = "structures"
     parallel: bool = False
     definition: Mapping[str, Any] = field(default_factory=dict)
 

@@ -11,7 +11,10 @@ if TYPE_CHECKING:
 
 
 def teller(view: ProgressView, last: list[BuildProgress], what: str = "") -> Callable[[BuildProgress], None]:
-    """Return what shows how far a build (of ``what``) is, always on a terminal, else now and then, and leaves the newest in ``last``."""
+    """Return what shows how far a build is, always on a terminal, else now and then, and leaves the newest in ``last``.
+
+    what: words before the stage.
+    """
     from voldetail.cli.progress import LINE_SECONDS
     from voldetail.report.facts import duration
 

@@ -161,8 +161,8 @@ def _check_room(out: Path, needed: int, part: Path) -> None:
         return
     if usage.total > 0 and usage.free < 2 * needed - there:
         raise InputError(
-            f"Cannot build {out}: {size_words(2 * needed - there)} are needed there while building and {size_words(usage.free)} are free; "
-            "free some space, give fewer --entries or another disk."
+            f"Cannot build {out}: {size_words(2 * needed - there)} are needed there while building and "
+            f"{size_words(usage.free)} are free; free some space, give fewer --entries or another disk."
         )
 
 

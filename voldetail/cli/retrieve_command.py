@@ -97,7 +97,10 @@ def _groups(library: Path | None) -> Groups:
     from voldetail.texture.structures import MODELS
 
     if library is not None:
-        return open_library(library).groups
+        opened = open_library(library)
+        if not opened.groups:
+            raise InputError(f"The library {library} has reliefs, which fits start from (fit --library); give one of structures.")
+        return opened.groups
     sources = [StructureSource(model) for model in MODELS.values()]
     with ProgressView(remarks()) as view:
         return cached(

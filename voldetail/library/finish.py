@@ -15,10 +15,11 @@ import numpy as np
 from voldetail.errors import InputError
 from voldetail.files import flush
 from voldetail.library.layout import FORMAT, FORMAT_VERSION, arrays_of, step_of
+from voldetail.library.measures import MEASURES
 from voldetail.library.plan import Plan
 from voldetail.library.staging import Staging
 from voldetail.library.tables import worked_out
-from voldetail.library.vectors import definition, digest, weights, weights_definition
+from voldetail.library.vectors import digest, weights, weights_definition
 
 
 def finish(staging: Staging, path: Path, on_entries: Callable[[int], None]) -> None:
@@ -37,14 +38,16 @@ def finish(staging: Staging, path: Path, on_entries: Callable[[int], None]) -> N
             done = 0
             for place, (source, count) in enumerate(zip(plan.sources, plan.counts, strict=True)):
                 group = root.create_group(source.name)
-                arrays = {array.name: _created(group, array) for array in arrays_of(count, len(source.keys))}
+                layouts = arrays_of(count, len(source.keys), plan.measure)
+                arrays = {name: _created(group, layout) for name, layout in layouts.items()}
                 reader, content, step = staging.rows(place), hashlib.sha256(), step_of(count)
                 for first in range(0, count, step):
                     here = slice(first, min(first + step, count))
                     values, vectors = reader.next(here.stop - first)
-                    norms, outlines = worked_out(np.ascontiguousarray(vectors, np.float32), weights(plan.w_global))
-                    arrays["values"][here], arrays["vectors"][here], arrays["norms"][here] = values, vectors, norms
-                    arrays["outlines"][:, here] = outlines
+                    arrays["values"][here], arrays["vectors"][here] = values, vectors
+                    if MEASURES[plan.measure].outlined:
+                        norms, outlines = worked_out(np.ascontiguousarray(vectors, np.float32), weights(plan.w_global))
+                        arrays["norms"][here], arrays["outlines"][:, here] = norms, outlines
                     content.update(values.tobytes() + vectors.tobytes())
                     done += here.stop - first
                     on_entries(done)
@@ -59,8 +62,10 @@ def finish(staging: Staging, path: Path, on_entries: Callable[[int], None]) -> N
 
 
 def _attributes(plan: Plan) -> dict[str, Any]:
+    definition = MEASURES[plan.measure].definition()
     return {
-        "format": FORMAT, "version": FORMAT_VERSION, "descriptor": definition(), "descriptor_sha256": digest(definition()),
+        "format": FORMAT, "version": FORMAT_VERSION, "measure": plan.measure, "descriptor": definition,
+        "descriptor_sha256": digest(definition),
         "weights": weights_definition(plan.w_global), "sources": [source.name for source in plan.sources],
     }  # fmt: skip
 

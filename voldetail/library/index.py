@@ -95,6 +95,8 @@ def write_index(library: Library, on_entries: Callable[[int], None] = lambda ent
 
     Raises InputError where it cannot be written.
     """
+    if not library.groups:
+        raise InputError(f"The library {library.header.path} has reliefs, which are few: they need no index.")
     path, done = library.header.path / "index", 0
     head = json.dumps({"format": FORMAT, "version": VERSION, "library": library.header.sha256}) + "\n"
     with atomic(path) as temporary, open(temporary, "wb") as stream:

@@ -3,8 +3,8 @@
     LIB/zarr.json                     format, version, what vectors and norms were made with, names of the sources
     LIB/SOURCE/zarr.json              names of the numbers, seed, count, definition, SHA-256 of values and vectors
     LIB/SOURCE/values    (N, numbers) float64        an entry's numbers
-    LIB/SOURCE/vectors   (N, 750)     float32        its descriptor
-    LIB/SOURCE/norms     (N, 12)      float32        what a query needs of it, see `tables`
+    LIB/SOURCE/vectors   (N, 750)     float32        its descriptor; of reliefs, as many numbers as a row has, float16
+    LIB/SOURCE/norms     (N, 12)      float32        what a query needs of it, see `tables`; none of reliefs
     LIB/SOURCE/outlines  (72, N)      float32
 
 Chunks are stored as they are, little-endian and not compressed, so that each file can be mapped into memory.
@@ -16,10 +16,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
+from voldetail.library.measures import MEASURES, MeasureName
 from voldetail.library.tables import BLOCK, OUTLINED_ROWS
-from voldetail.library.vectors import LENGTH
 from voldetail.metric.gabor import SCALES
 
 FORMAT = "voldetail library"
@@ -48,6 +49,7 @@ class LibraryRecord(_Record):
 
     format: Literal["voldetail library"]
     version: Literal[1]
+    measure: MeasureName
     descriptor: dict[str, Any]
     descriptor_sha256: _Hash
     weights: dict[str, Any]
@@ -66,7 +68,7 @@ class SourceRecord(_Record):
 
 @dataclass(frozen=True)
 class ArrayLayout:
-    """An array of a source: its folder, shape, the shape of a chunk, and its kind of number, "float32" or "float64"."""
+    """An array of a source: its folder, shape, the shape of a chunk, and its kind of number, "float16" to "float64"."""
 
     name: str
     shape: tuple[int, int]
@@ -76,7 +78,7 @@ class ArrayLayout:
     @property
     def chunk_bytes(self) -> int:
         """Bytes of each chunk's file; the last one is filled up."""
-        return self.chunk[0] * self.chunk[1] * (8 if self.kind == "float64" else 4)
+        return self.chunk[0] * self.chunk[1] * np.dtype(self.kind).itemsize
 
     @property
     def files(self) -> list[str]:
@@ -104,17 +106,18 @@ def step_of(entries: int) -> int:
     return -(-entries // -(-entries // BLOCK))
 
 
-def arrays_of(entries: int, keys: int) -> tuple[ArrayLayout, ...]:
-    """Return the arrays of a source of so many entries and numbers."""
-    step = step_of(entries)
-    rows = (("values", keys, "float64"), ("vectors", LENGTH, "float32"), ("norms", 2 * SCALES, "float32"))
-    return (
-        *(ArrayLayout(name, (entries, width), (step, width), kind) for name, width, kind in rows),
-        ArrayLayout("outlines", (OUTLINED_ROWS, entries), (OUTLINED_ROWS, step), "float32"),
-    )
+def arrays_of(entries: int, keys: int, measure: MeasureName) -> dict[str, ArrayLayout]:
+    """Return the arrays by name of a source of so many entries and numbers."""
+    step, used = step_of(entries), MEASURES[measure]
+    columns = [("values", keys, "float64"), ("vectors", used.length(), used.kind)]
+    columns += [("norms", 2 * SCALES, "float32")] if used.outlined else []
+    found = {name: ArrayLayout(name, (entries, width), (step, width), kind) for name, width, kind in columns}
+    if used.outlined:
+        found["outlines"] = ArrayLayout("outlines", (OUTLINED_ROWS, entries), (OUTLINED_ROWS, step), "float32")
+    return found
 
 
-def bytes_on_disk(entries: Sequence[int], keys: Sequence[int]) -> int:
+def bytes_on_disk(entries: Sequence[int], keys: Sequence[int], measure: MeasureName) -> int:
     """Return the bytes of a library's chunks, for the entries and numbers of each source."""
-    arrays = [array for n, p in zip(entries, keys, strict=True) for array in arrays_of(n, p)]
+    arrays = [array for n, p in zip(entries, keys, strict=True) for array in arrays_of(n, p, measure).values()]
     return sum(len(array.files) * array.chunk_bytes for array in arrays)

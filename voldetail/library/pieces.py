@@ -13,7 +13,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-Kind = TypeVar("Kind", np.float32, np.float64)
+Kind = TypeVar("Kind", np.float16, np.float32, np.float64)
 
 
 @dataclass(frozen=True, eq=False)

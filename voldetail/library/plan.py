@@ -8,8 +8,9 @@ from typing import Any
 
 from voldetail.errors import InputError
 from voldetail.library.layout import FORMAT_VERSION, MOST_ENTRIES, MOST_KEYS, MOST_SOURCES, NAME, bytes_on_disk
+from voldetail.library.measures import MEASURES, MeasureName
 from voldetail.library.source import Source
-from voldetail.library.vectors import definition, weights_definition
+from voldetail.library.vectors import weights_definition
 from voldetail.metric.gabor import GLOBAL
 
 SMALLEST_CHUNK, LARGEST_CHUNK, CHUNKS = 8, 128, 32
@@ -56,8 +57,15 @@ class Plan:
             most = getattr(source, "most", None)
             if most is not None and count > most:
                 raise InputError(f"{count} entries of {source.name} are asked for, and it has {most}; ask for fewer.")
+        if len({source.measure for source in self.sources}) > 1:
+            raise InputError("A library has either structures or reliefs; build one library for each.")
         if self.chunk is not None and self.chunk < 1:
             raise InputError(f"A chunk of {self.chunk} entries is not possible; at least 1 is needed.")
+
+    @property
+    def measure(self) -> MeasureName:
+        """What all pictures are described with."""
+        return self.sources[0].measure
 
     @property
     def entries(self) -> int:
@@ -67,7 +75,7 @@ class Plan:
     @property
     def bytes(self) -> int:
         """Size of the finished library's chunks; as much again is needed while it is built."""
-        return bytes_on_disk(self.counts, [len(source.keys) for source in self.sources])
+        return bytes_on_disk(self.counts, [len(source.keys) for source in self.sources], self.measure)
 
     @property
     def definition(self) -> dict[str, Any]:
@@ -77,7 +85,8 @@ class Plan:
             for s, n in zip(self.sources, self.counts, strict=True)
         ]
         return {
-            "version": FORMAT_VERSION, "descriptor": definition(), "weights": weights_definition(self.w_global), "sources": parts,
+            "version": FORMAT_VERSION, "measure": self.measure, "descriptor": MEASURES[self.measure].definition(),
+            "weights": weights_definition(self.w_global), "sources": parts,
         }  # fmt: skip
 
     def tasks(self) -> list[Task]:

@@ -15,19 +15,21 @@ from numpy.typing import NDArray
 
 from voldetail.errors import InputError
 from voldetail.library.entries import ENTRIES_VERSION, SIDE, Sampling, entries
+from voldetail.library.measures import MeasureName
 from voldetail.library.vectors import COMPLETE_SIDE
 from voldetail.texture.structures import StructureModel
 
-Chunk = tuple[NDArray[np.float64], NDArray[np.float32]]
-"""Values (count, numbers) and descriptor vectors (count, 750)."""
+Chunk = tuple[NDArray[np.float64], NDArray[np.floating]]
+"""Values (count, numbers) and descriptors (count, length of the measure)."""
 
 
 class Source(Protocol):
     """Where entries of one kind come from; picklable, since it goes to the processes that compute.
 
     name: of the source in its library, small letters, digits, spaces, - and _. keys: names of an entry's numbers. seed: of the
-    noise in its pictures. definition: all that decides an entry beside its number and the seed, as JSON has it. parallel: whether
-    several processes of one machine may compute at once; a source that uses all cores itself says no.
+    noise in its pictures. measure: what its pictures are described with, see `measures`. definition: all that decides an entry
+    beside its number and the seed, as JSON has it. parallel: whether several processes of one machine may compute at once; a
+    source that uses all cores itself says no.
     """
 
     @property
@@ -36,6 +38,8 @@ class Source(Protocol):
     def keys(self) -> tuple[str, ...]: ...
     @property
     def seed(self) -> int: ...
+    @property
+    def measure(self) -> MeasureName: ...
     @property
     def definition(self) -> Mapping[str, Any]: ...
     @property
@@ -69,6 +73,11 @@ class StructureSource:
     def name(self) -> str:
         """The model's name."""
         return self.model.name
+
+    @property
+    def measure(self) -> MeasureName:
+        """Structures'."""
+        return "structures"
 
     @property
     def keys(self) -> tuple[str, ...]:

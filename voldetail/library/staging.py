@@ -19,9 +19,9 @@ import numpy as np
 from voldetail.errors import InputError
 from voldetail.files import readable, write_bytes, write_text
 from voldetail.library.layout import MOST_METADATA
+from voldetail.library.measures import MEASURES
 from voldetail.library.plan import Plan, Task
 from voldetail.library.source import Chunk, Source
-from voldetail.library.vectors import LENGTH
 
 HASH = 32  # bytes of a SHA-256
 
@@ -35,6 +35,8 @@ class Staging:
 
     def __init__(self, folder: Path, plan: Plan) -> None:
         self.folder, self.plan = folder, plan
+        measure = MEASURES[plan.measure]
+        self.length, self.kind = measure.length(), np.dtype(measure.kind).newbyteorder("<")
         self._lock = -1
         said = json.dumps({"plan": plan.definition, "chunk": plan.chunk}, indent=2, sort_keys=True) + "\n"
         try:
@@ -65,7 +67,7 @@ class Staging:
 
     def write(self, task: Task, chunk: Chunk) -> None:
         """Keep a chunk. Raises InputError where it is not what its source promises, and where the disk is full."""
-        data = _bytes(self.plan.sources[task.source], task, chunk)
+        data = self._bytes(self.plan.sources[task.source], task, chunk)
         try:
             write_bytes(self._file(task), hashlib.sha256(data).digest() + data)
         except InputError as error:
@@ -97,7 +99,7 @@ class Staging:
         numbers = 8 * keys * task.count
         file = self._file(task)
         try:
-            if file.stat().st_size != HASH + numbers + 4 * LENGTH * task.count:
+            if file.stat().st_size != HASH + numbers + self.kind.itemsize * self.length * task.count:
                 return None
             data = file.read_bytes()
         except OSError:
@@ -105,7 +107,21 @@ class Staging:
         if hashlib.sha256(data[HASH:]).digest() != data[:HASH]:
             return None
         values = np.frombuffer(data, "<f8", task.count * keys, HASH).reshape(task.count, keys)
-        return values, np.frombuffer(data, "<f4", task.count * LENGTH, HASH + numbers).reshape(task.count, LENGTH)
+        rows = np.frombuffer(data, self.kind, task.count * self.length, HASH + numbers)
+        return values, rows.reshape(task.count, self.length)
+
+    def _bytes(self, source: Source, task: Task, chunk: Chunk) -> bytes:
+        values, vectors = np.asarray(chunk[0], "<f8"), np.asarray(chunk[1], self.kind)
+        wanted = (task.count, len(source.keys)), (task.count, self.length)
+        if (values.shape, vectors.shape) != wanted:
+            raise InputError(f"{source.name} gave entries of the shapes {values.shape} and {vectors.shape}; {wanted} are needed.")
+        good = np.isfinite(values).all(axis=1) & np.isfinite(vectors).all(axis=1)
+        if not good.all():
+            raise InputError(
+                f"Entry {task.first + int(np.argmin(good))} of {source.name} has numbers that are NaN or infinite; "
+                "leave out its source."
+            )
+        return values.tobytes() + vectors.tobytes()
 
 
 class _Reader:
@@ -126,20 +142,6 @@ class _Reader:
         values, vectors = (np.concatenate(parts) for parts in zip(*self.held, strict=True))
         self.held = [(values[count:], vectors[count:])]
         return values[:count], vectors[:count]
-
-
-def _bytes(source: Source, task: Task, chunk: Chunk) -> bytes:
-    values, vectors = np.asarray(chunk[0], "<f8"), np.asarray(chunk[1], "<f4")
-    wanted = (task.count, len(source.keys)), (task.count, LENGTH)
-    if (values.shape, vectors.shape) != wanted:
-        raise InputError(f"{source.name} gave entries of the shapes {values.shape} and {vectors.shape}; {wanted} are needed.")
-    good = np.isfinite(values).all(axis=1) & np.isfinite(vectors).all(axis=1)
-    if not good.all():
-        raise InputError(
-            f"Entry {task.first + int(np.argmin(good))} of {source.name} has numbers that are NaN or infinite; "
-            "leave out its source."
-        )
-    return values.tobytes() + vectors.tobytes()
 
 
 def _locked(file: Path, folder: Path) -> int:

@@ -19,7 +19,7 @@ from pydantic import ValidationError
 from voldetail.detail.json_text import parsed
 from voldetail.detail.refusal import printable, refusal, shown
 from voldetail.errors import InputError
-from voldetail.library.groups import Group
+from voldetail.library.groups import Group, Series
 from voldetail.library.layout import (
     FORMAT,
     FORMAT_VERSION,
@@ -30,9 +30,10 @@ from voldetail.library.layout import (
     arrays_of,
     bytes_on_disk,
 )
+from voldetail.library.measures import MEASURES
 from voldetail.library.pieces import Columns, Rows
 from voldetail.library.tables import Table
-from voldetail.library.vectors import definition, digest, weights, weights_definition
+from voldetail.library.vectors import digest, weights, weights_definition
 
 Read = TypeVar("Read", LibraryRecord, SourceRecord)
 
@@ -53,7 +54,8 @@ class Header:
     @property
     def bytes(self) -> int:
         """Size of its chunks on disk."""
-        return bytes_on_disk(*zip(*((s.entries, len(s.keys)) for s in self.sources.values()), strict=True))
+        entries, keys = zip(*((s.entries, len(s.keys)) for s in self.sources.values()), strict=True)
+        return bytes_on_disk(entries, keys, self.record.measure)
 
     @property
     def w_global(self) -> float:
@@ -64,7 +66,8 @@ class Header:
     @property
     def stale(self) -> str:
         """Empty, or what of this voldetail's is not what the library was made with."""
-        if self.record.descriptor_sha256 != digest(definition()) or self.record.descriptor != definition():
+        definition = MEASURES[self.record.measure].definition()
+        if self.record.descriptor_sha256 != digest(definition) or self.record.descriptor != definition:
             return "its descriptors"
         if self.record.weights != weights_definition(self.w_global):
             return "its weights"
@@ -78,10 +81,11 @@ class Header:
 
 @dataclass(frozen=True, eq=False)
 class Library:
-    """A library: its header, and the groups that queries are made against, by source."""
+    """A library: its header, and what queries are made against, by source: groups of structures, or series of reliefs."""
 
     header: Header
     groups: dict[str, Group]
+    series: dict[str, Series]
 
 
 def open_library(path: str | Path) -> Library:
@@ -93,13 +97,18 @@ def open_library(path: str | Path) -> Library:
     header = read_header(path)
     if header.stale:
         names = " ".join(f"'{name}'" if " " in name else name for name in header.sources)
+        if header.record.measure == "reliefs":
+            names = "relief"
         most = max(source.entries for source in header.sources.values())
         raise InputError(
             f"The library {path} is out of date: {header.stale} are not this voldetail's; build it again with: "
             f"voldetail library build {names} --entries {most} -o {path} --force"
         )
+    folders = {name: (header.path / name, source) for name, source in header.sources.items()}
+    if header.record.measure == "reliefs":
+        return Library(header, {}, {name: _series(folder, name, source) for name, (folder, source) in folders.items()})
     w = weights(header.w_global)
-    return Library(header, {name: _group(header.path / name, name, s, w) for name, s in header.sources.items()})
+    return Library(header, {name: _group(folder, name, source, w) for name, (folder, source) in folders.items()}, {})
 
 
 def read_header(path: str | Path) -> Header:
@@ -128,7 +137,7 @@ def read_header(path: str | Path) -> Header:
         within = f"{where}, source {name}"
         _must_be(path / name, folder=True, size=None, where=where)
         sources[name] = _checked(SourceRecord, _attributes(path / name, within), within)
-        for array in arrays_of(sources[name].entries, len(sources[name].keys)):
+        for array in arrays_of(sources[name].entries, len(sources[name].keys), record.measure).values():
             _check_array(path / name / array.name, array, within)
     return Header(path, record, sources)
 
@@ -142,10 +151,17 @@ def is_library(path: Path) -> bool:
 
 
 def _group(folder: Path, name: str, record: SourceRecord, w: NDArray[np.float64]) -> Group:
-    values, vectors, norms, outlines = arrays_of(record.entries, len(record.keys))
+    arrays = arrays_of(record.entries, len(record.keys), "structures")
+    outlines = arrays["outlines"]
     columns = Columns(outlines.shape, outlines.chunk[1], _Mapped(folder / outlines.name, outlines, np.float32))
-    table = Table(_rows(folder, vectors, np.float32), w, _rows(folder, norms, np.float32), columns)
-    return Group(name, tuple(record.keys), _rows(folder, values, np.float64), table, record.seed)
+    table = Table(_rows(folder, arrays["vectors"], np.float32), w, _rows(folder, arrays["norms"], np.float32), columns)
+    return Group(name, tuple(record.keys), _rows(folder, arrays["values"], np.float64), table, record.seed)
+
+
+def _series(folder: Path, name: str, record: SourceRecord) -> Series:
+    arrays = arrays_of(record.entries, len(record.keys), "reliefs")
+    values, rows = _rows(folder, arrays["values"], np.float64), _rows(folder, arrays["vectors"], np.float16)
+    return Series(name, tuple(record.keys), values, rows, record.seed, record.definition)
 
 
 def _rows(folder: Path, array: ArrayLayout, kind: Any) -> Rows[Any]:

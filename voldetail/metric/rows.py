@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +16,18 @@ from numpy.typing import NDArray
 from voldetail.errors import InputError
 from voldetail.metric import magnitudes, patterns, quantiles
 from voldetail.metric.descriptor import Descriptor, describe
+from voldetail.metric.filters import WINDOW
 from voldetail.metric.ingredients import COMBINED, Array
+from voldetail.metric.layers import LEVELS
 
 APART: Mapping[str, Callable[[Array, Array, Array | None], Array]] = {
     "magnitudes": magnitudes.apart, "patterns": patterns.apart, "marginals": quantiles.apart, "spectrum": quantiles.apart,
     "granulometry": quantiles.apart, "swells": quantiles.apart,
 }  # fmt: skip
 """How each ingredient compares many at once."""
+
+ROWS_VERSION = 1
+"""Counts changes of what is measured that no constant in `definition` tells."""
 
 BLOCK = 128
 """Rows compared at once: what is worked on stays in the processor's cache."""
@@ -62,6 +68,14 @@ def parts() -> tuple[tuple[str, str, tuple[int, ...]], ...]:
     """Return ingredient, part and shape of what a row holds, in order; all pictures have the same."""
     some = describe(np.random.default_rng(0).random((64, 64)).astype(np.float32))
     return tuple((name, part, some.features[name][part].shape) for name, weights in COMBINED.items() for part in weights)
+
+
+def definition() -> dict[str, Any]:
+    """Return all that decides a row, as JSON has it: what stored rows were measured with."""
+    return {
+        "version": ROWS_VERSION, "parts": [[name, part, list(shape)] for name, part, shape in parts()], "levels": LEVELS,
+        "window": WINDOW,
+    }  # fmt: skip
 
 
 def row_length() -> int:

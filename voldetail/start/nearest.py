@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,24 +9,16 @@ from numpy.typing import NDArray
 
 from voldetail.fit.starts import Start
 from voldetail.fit.target import Target
+from voldetail.library.groups import Series
 from voldetail.metric import describe
 from voldetail.metric.rows import distances
 from voldetail.scene.setup import Setup
 from voldetail.scene.view import view_of
 from voldetail.start.exposure import exposed
 from voldetail.start.light import Turned, direction_at_zone, turned
-from voldetail.start.looks import Look, seen_through
+from voldetail.start.looks import look, seen_through
 
 MIRRORS = (False, True)
-
-
-@dataclass(frozen=True, eq=False)
-class Reliefs:
-    """Looks with their rows (N, L) under a light from the right at ``elevation`` degrees."""
-
-    elevation: float
-    looks: Sequence[Look]
-    rows: NDArray[np.floating]
 
 
 @dataclass(frozen=True)
@@ -39,7 +30,7 @@ class Found:
     distance: float
 
 
-def nearest_reliefs(target: Target, setup: Setup, reliefs: Reliefs, top: int) -> tuple[tuple[Found, ...], tuple[Start, ...]]:
+def nearest_reliefs(target: Target, setup: Setup, reliefs: Series, top: int) -> tuple[tuple[Found, ...], tuple[Start, ...]]:
     """Return the ``top`` reliefs nearest to the photo by the default metric, nearest first, and the starts that they make.
 
     Raises InputError where the mask leaves too little of the zone at the library's size.
@@ -47,13 +38,14 @@ def nearest_reliefs(target: Target, setup: Setup, reliefs: Reliefs, top: int) ->
     view = view_of(setup.camera, target.shape, target.zone, setup.photo.resolution)
     azimuth, _ = direction_at_zone(target.lamp, view)
     asked = turned(target, azimuth)
-    found = []
-    for mirrored in MIRRORS:
-        for number, apart in enumerate(_distances(asked.mirrored() if mirrored else asked, reliefs.rows)):
-            found.append(Found(number, mirrored, apart * reliefs.looks[number].kind.handicap))
-    best = tuple(sorted(found, key=lambda f: f.distance)[:top])
+    looks, rows = [look(k, reliefs.seed) for k in range(len(reliefs.rows))], reliefs.rows[:]
+    handicaps = np.array([one.kind.handicap for one in looks])
+    # One row for each side of the light; the same order on every machine where two are equal.
+    apart = np.stack([_distances(asked.mirrored() if mirrored else asked, rows) * handicaps for mirrored in MIRRORS])
+    order = np.argsort(apart.ravel(), kind="stable")[:top]
+    best = tuple(Found(int(k) % len(looks), MIRRORS[int(k) // len(looks)], float(apart.ravel()[k])) for k in order)
     window = max(view.rows, view.columns) * view.pixel
-    return best, tuple(seen_through(reliefs.looks[f.number], window, azimuth, f.mirrored) for f in best)
+    return best, tuple(seen_through(looks[f.number], window, azimuth, f.mirrored) for f in best)
 
 
 def _distances(asked: Turned, rows: NDArray[np.floating]) -> NDArray[np.float64]:
