@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.table import Table
+from rich.text import Text
 
 from voldetail.cli.console import output, remarks
 from voldetail.detail.parameters import nearest
+from voldetail.detail.refusal import printable, shown
 from voldetail.errors import InputError
 
 if TYPE_CHECKING:
@@ -70,6 +72,8 @@ def build(
     last: list[BuildProgress] = []
     with ProgressView(remarks()) as view:
         tell = _teller(view, last)
+        if part_of(out).is_dir():
+            view.step("reading what is computed already")
         try:
             made(sources, counts, out, workers=workers, scheduler=scheduler, force=force, on_progress=tell)
         except KeyboardInterrupt:
@@ -109,10 +113,14 @@ def info(
     for heading in ("source", "entries", "numbers", "sampling", "seed", "current"):
         table.add_column(heading, no_wrap=heading != "numbers")
     for name, record in header.sources.items():
-        sampling = str(record.definition.get("sampling", ""))[:20]
-        table.add_row(name, str(record.entries), ", ".join(record.keys), sampling, str(record.seed), _current(name, record))
+        sampling = record.definition.get("sampling")
+        words = (
+            name, str(record.entries), ", ".join(record.keys), sampling if isinstance(sampling, str) else "", str(record.seed),
+            _current(name, record),
+        )  # fmt: skip
+        table.add_row(*(Text(printable(word)) for word in words))
     output().print(table)
-    version = header.record.descriptor.get("version")
+    version = shown(header.record.descriptor.get("version"))
     state = f"out of date: {header.stale} are not this voldetail's; build it again" if header.stale else "current"
     for label, text in (
         ("entries", f"{header.entries}, {_size(header.bytes)} on disk"),
