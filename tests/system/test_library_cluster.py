@@ -13,6 +13,7 @@ from voldetail.library import StructureSource
 from voldetail.library.build import BuildProgress, build, part_of
 from voldetail.texture.structures import MODELS
 
+dask = pytest.importorskip("dask")
 distributed = pytest.importorskip("distributed")
 
 SOURCES = [StructureSource(MODELS["star"], side=104)]
@@ -30,7 +31,8 @@ def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
 
 @pytest.fixture
 def cluster() -> Iterator[Any]:
-    with distributed.LocalCluster(
+    # Else half a minute is spent on asking the killed worker for what it had.
+    with dask.config.set({"distributed.comm.timeouts.connect": "2s"}), distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
     ) as running:  # fmt: skip
         yield running

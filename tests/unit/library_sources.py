@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from voldetail.errors import InputError
+from voldetail.library.measures import MeasureName
 from voldetail.library.source import Chunk
 
 
@@ -20,6 +21,7 @@ class Counted:
     name: str = "counted"
     keys: tuple[str, ...] = ("number", "share")
     seed: int = 0
+    measure: MeasureName = "structures"
     parallel: bool = True
     seconds: float = 0.0
     trouble: str = ""

@@ -67,7 +67,7 @@ def test_chunks_are_even_and_hold_a_block_at_most() -> None:
     for count in (1, 5, BLOCK, BLOCK + 1, 100_000, 1_000_000):
         step = step_of(count)
         assert step <= BLOCK
-        files = len(arrays_of(count, 3)[0].files)
+        files = len(arrays_of(count, 3, "structures")["values"].files)
         assert files == -(-count // BLOCK)
         assert 0 <= files * step - count < files
 

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.table import Table
+from rich.text import Text
 
 from voldetail.cli.building import size_words, teller
 from voldetail.cli.console import output, remarks
 from voldetail.detail.parameters import nearest
+from voldetail.detail.refusal import printable, shown
 from voldetail.errors import InputError
 
 if TYPE_CHECKING:
@@ -33,10 +35,13 @@ library_app = typer.Typer(
 
 @library_app.command()
 def build(
-    what: Annotated[list[str], typer.Argument(metavar="WHAT...", help="Names of structure models, or all.")],
+    what: Annotated[
+        list[str],
+        typer.Argument(metavar="WHAT...", help="Names of structure models, or all; or relief, for fits to start from."),
+    ],
     out: Annotated[Path, typer.Option("--output", "-o", metavar="LIB", help="The library, a folder.")],
     count: Annotated[
-        int | None, typer.Option("--entries", min=1, help="Entries of each model; a grid has its own number.")
+        int | None, typer.Option("--entries", min=1, help="Entries of each; a grid has its own number, reliefs have 2000.")
     ] = None,
     sampling: Annotated[str, typer.Option(help="random or grid: how parameters are spread over their ranges.")] = "random",
     seed: Annotated[int, typer.Option(min=0, help="The root of all random numbers.")] = 0,
@@ -47,7 +52,9 @@ def build(
     force: Annotated[bool, typer.Option("--force", help="Replace the library that is there.")] = False,
     indexed: Annotated[bool, typer.Option("--index", help="Make its index as well, see library index.")] = False,
 ) -> None:
-    """Make many pictures of procedural textures and keep their parameters and descriptors.
+    """Make many pictures of procedural textures, or of reliefs, and keep their parameters and descriptors.
+
+    relief is a series for each of nine elevations of the light, relief-40 that of one.
 
     Ctrl-C keeps what is computed; the same command goes on.
     """
@@ -64,11 +71,14 @@ def build(
     plan = Plan(tuple(sources), tuple(counts))
     check_output(out, force)
     _check_room(out, plan.bytes, part_of(out))
-    of = f"{plan.entries} entries of {len(sources)} model{'s' if len(sources) > 1 else ''}"
+    kind = "series of reliefs" if plan.measure == "reliefs" else "models" if len(sources) > 1 else "model"
+    of = f"{plan.entries} entries of {len(sources)} {kind}"
     remarks().print(f"{of}, {size_words(plan.bytes)} on disk and twice that while building.", markup=False, soft_wrap=True)
     last: list[BuildProgress] = []
     with ProgressView(remarks()) as view:
         tell = teller(view, last)
+        if part_of(out).is_dir():
+            view.step("reading what is computed already")
         try:
             made(sources, counts, out, workers=workers, scheduler=scheduler, force=force, on_progress=tell)
         except KeyboardInterrupt:
@@ -108,10 +118,14 @@ def info(
     for heading in ("source", "entries", "numbers", "sampling", "seed", "current"):
         table.add_column(heading, no_wrap=heading != "numbers")
     for name, record in header.sources.items():
-        sampling = str(record.definition.get("sampling", ""))[:20]
-        table.add_row(name, str(record.entries), ", ".join(record.keys), sampling, str(record.seed), _current(name, record))
+        sampling = record.definition.get("sampling")
+        words = (
+            name, str(record.entries), ", ".join(record.keys), sampling if isinstance(sampling, str) else "", str(record.seed),
+            _current(name, record),
+        )  # fmt: skip
+        table.add_row(*(Text(printable(word)) for word in words))
     output().print(table)
-    version = header.record.descriptor.get("version")
+    version = shown(header.record.descriptor.get("version"))
     state = f"out of date: {header.stale} are not this voldetail's; build it again" if header.stale else "current"
     for label, text in (
         ("entries", f"{header.entries}, {size_words(header.bytes)} on disk"),
@@ -133,17 +147,26 @@ def sources_of(what: list[str], sampling: str, seed: int) -> list[Source]:
 
     if sampling not in SAMPLINGS:
         raise InputError(f"--sampling {sampling!r} is not known; allowed: random, grid.")
+    if any(word.startswith("relief") for word in what):
+        from voldetail.start import ReliefSource
+        from voldetail.start.choose import elevations_of
+
+        return [ReliefSource(elevation, seed) for elevation in elevations_of(what)]
     names: list[str] = []
     for word in what:
         name = word.replace("-", " ")  # as a shell likes the name "cellular grid"
         if name != ALL and name not in MODELS:
-            known = [model.replace(" ", "-") for model in MODELS]
+            known = [model.replace(" ", "-") for model in MODELS] + ["relief"]
             raise InputError(f"There is no model {word!r}; {nearest(word, [*known, ALL])}. Known: {', '.join(known)}, all.")
         names += list(MODELS) if name == ALL else [name]
     return [StructureSource(MODELS[name], seed, "grid" if sampling == "grid" else "random") for name in dict.fromkeys(names)]
 
 
 def _counts(sources: list[Source], count: int | None) -> list[int]:
+    from voldetail.start import ENTRIES
+
+    if sources[0].measure == "reliefs":
+        return [count or ENTRIES] * len(sources)
     grids = [getattr(source, "most", None) for source in sources]
     if count is None and None in grids:
         raise InputError("The number of entries is missing; give --entries, e.g. --entries 1000 for a first try.")
@@ -170,8 +193,12 @@ def _current(name: str, record: SourceRecord) -> str:
     """Whether the entries are those that this voldetail would make."""
     from voldetail.library.source import StructureSource
     from voldetail.library.vectors import COMPLETE_SIDE
+    from voldetail.start import ReliefSource
     from voldetail.texture.structures import MODELS
 
+    elevation = record.definition.get("elevation")
+    if record.definition.get("kind") == "relief" and isinstance(elevation, int):
+        return "yes" if record.definition == ReliefSource(elevation, record.seed).definition else "no, other reliefs"
     side = record.definition.get("side")
     if record.definition.get("kind") != "structure" or name not in MODELS or not isinstance(side, int):
         return "not known here"

@@ -53,7 +53,7 @@ def finish(staging: Staging, path: Path, on_entries: Callable[[int], None]) -> N
                     on_entries(done)
                 said = {"keys": list(source.keys), "seed": source.seed, "entries": count, "definition": dict(source.definition)}
                 group.update_attributes(said | {"sha256": content.hexdigest()})
-        _flush(path)
+        _flush_all(path)
     except OSError as error:
         raise InputError(
             f"Cannot write the library in {path.parent}: {error.strerror or error}; the entries are kept: free some space and "
@@ -80,7 +80,7 @@ def _created(group: Any, array: Any) -> Any:
     )  # fmt: skip
 
 
-def _flush(path: Path) -> None:
+def _flush_all(path: Path) -> None:
     """Bring files to the disk before the library gets its name, so that a crash leaves all of it or none."""
     for folder, _, files in os.walk(path):
         for name in files:
