@@ -41,7 +41,7 @@ def build(
     ],
     out: Annotated[Path, typer.Option("--output", "-o", metavar="LIB", help="The library, a folder.")],
     count: Annotated[
-        int | None, typer.Option("--entries", min=1, help="Entries of each; a grid has its own number, reliefs have 2000.")
+        int | None, typer.Option("--entries", min=1, help="Entries of each; a grid has its own number, reliefs have 4000.")
     ] = None,
     sampling: Annotated[str, typer.Option(help="random or grid: how parameters are spread over their ranges.")] = "random",
     seed: Annotated[int, typer.Option(min=0, help="The root of all random numbers.")] = 0,
