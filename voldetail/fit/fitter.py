@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from voldetail.backend import mitsuba
-from voldetail.detail import bounds, rounded
+from voldetail.detail import rounded
 from voldetail.errors import InputError, VoldetailError
 from voldetail.fit.autolight import resolve_light
 from voldetail.fit.colour import ColourChoice, choose_colour
@@ -18,34 +18,18 @@ from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.objective import Evaluation, Objective
 from voldetail.fit.plans import Stage, default_plan, paper_plan
 from voldetail.fit.provenance import Findings, signed
-from voldetail.fit.ranges import MEDIUM_ROUGHNESS, ROUGHNESS, SOLID_ROUGHNESS
 from voldetail.fit.reflectance import colours
 from voldetail.fit.result import FitResult
 from voldetail.fit.session import Progress, Session, State, Stopped, derived_seed
-from voldetail.fit.space import Space
+from voldetail.fit.shown import space_of
 from voldetail.fit.starts import Start
 from voldetail.fit.target import Target, load_photo_of, make_target
 from voldetail.fit.told import Told, told_of_medium
 from voldetail.image import Photo
 from voldetail.metric import METRICS
 from voldetail.metric.anisotropy import anisotropy
-from voldetail.scene.build import build, edge_of
+from voldetail.scene.build import build
 from voldetail.scene.setup import SMALLEST_ZONE, Setup
-from voldetail.scene.view import view_of
-
-SMALLEST_CELL = 3.0
-"""Pixels a cell must span: smaller ones cannot be told from pixel noise."""
-
-LARGEST_CELL = 0.6
-"""Share of the zone that a cell may span: larger ones leave too few to have statistics."""
-
-DEEPEST = 0.12
-"""Share of the zone that a volume's relief may rise: what is deeper is seldom meant, and its grid takes minutes. Of clouds,
-0.07 and 0.09 were found with more allowed."""
-
-FINEST_OCTAVE = 1.6
-"""Pixels a cell of the finest octave must span, near the sampling limit of the mesh's one vertex a pixel."""
-
 
 COLOUR_SEEDS = 3
 """Noise seeds that judge the tries of a colour, and as many for the relief's shading."""
@@ -53,7 +37,7 @@ COLOUR_SEEDS = 3
 INTERVAL_SEEDS = 2
 """Noise seeds for the intervals of numbers."""
 
-FEWEST_TOLD = 400
+FEWEST_TOLD = 500
 """Evaluations below which a library is not made for a fit: that takes longer than the fit."""
 
 FINALISTS = 3
@@ -126,32 +110,6 @@ def takes_starts(setup: Setup) -> bool:
     usual = setup.mode == "displacement" and settings.solver == "default" and settings.metric == "combined"
     short = settings.library == "auto" and settings.evaluations is not None and settings.evaluations < FEWEST_TOLD
     return usual and not short and settings.library != "none"
-
-
-def space_of(setup: Setup, target: Target) -> Space:
-    """Return the space of details that the zone of ``target`` can show.
-
-    Raises InputError for a zone so small a part of its photo that no detail is fine enough.
-    """
-    view = view_of(setup.camera, target.shape, target.zone, setup.photo.resolution)
-    lowest, highest = bounds("noise.scale")
-    # What shows no finer than a pixel, or than a cell of the grid that a volume is baked to.
-    cell = edge_of(setup, view) if setup.mode == "volume" else 0.0
-    grain = max(view.pixel, cell)
-    shown = max(view.rows, view.columns) * view.pixel
-    coarsest = max(1.0 / (LARGEST_CELL * shown), lowest)
-    finest = min(1.0 / (SMALLEST_CELL * grain), highest)
-    if not coarsest < finest:
-        raise InputError(
-            f"The zone of {target.zone[2]} x {target.zone[3]} pixels is too small a part of its photo of"
-            f" {target.shape[1]} x {target.shape[0]}: crop the photo, or use a larger --zone."
-        )
-    return Space(
-        domain=setup.domain, scale=(coarsest, finest), finest=1.0 / (FINEST_OCTAVE * grain),
-        amplitude=setup.amplitude, plain=setup.fit.solver == "paper", mode=setup.mode, medium=setup.medium,
-        roughness=MEDIUM_ROUGHNESS if setup.medium else SOLID_ROUGHNESS if setup.mode == "volume" else ROUGHNESS,
-        highest=min(bounds("relief.amplitude")[1], shown * DEEPEST if setup.mode == "volume" else math.inf), cell=cell,
-    )
 
 
 def _session(

@@ -28,7 +28,7 @@ FINE = 192
 """Pixels a side of the fit that a library is for, by which the finest cells and octaves are limited."""
 
 SPACE = Space(domain="solid", scale=(1.0 / (0.6 * WINDOW), FINE / (3.0 * WINDOW)), finest=FINE / (1.6 * WINDOW))
-"""The space of a fit of a whole photo, see `fit.fitter.space_of`."""
+"""The space of a fit of a whole photo, see `fit.shown.space_of`."""
 
 SPREAD = 0.12
 """Deviation by which numbers are moved, of their ranges: neighbouring scales of one look just meet."""
