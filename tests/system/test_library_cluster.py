@@ -1,10 +1,14 @@
 """A library built by a Dask cluster, of which a worker is killed and then the scheduler goes away."""
 
+import json
 import os
 import signal
+import subprocess
+import sys
+import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -13,11 +17,11 @@ from voldetail.library import StructureSource
 from voldetail.library.build import BuildProgress, build, part_of
 from voldetail.texture.structures import MODELS
 
-dask = pytest.importorskip("dask")
 distributed = pytest.importorskip("distributed")
 
+ROOT = Path(__file__).resolve().parents[2]
 SOURCES = [StructureSource(MODELS["star"], side=104)]
-COUNT, CHUNK = 96, 4
+COUNT, CHUNK = 32, 2
 
 
 def files_of(folder: Path) -> dict[str, bytes]:
@@ -29,41 +33,66 @@ def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return files_of(build(SOURCES, COUNT, tmp_path_factory.mktemp("expected") / "lib", workers=1))
 
 
+@dataclass(frozen=True)
+class Cluster:
+    """A scheduler and two workers, processes of their own."""
+
+    address: str
+    scheduler: subprocess.Popen[bytes]
+    workers: list[subprocess.Popen[bytes]]
+
+
 @pytest.fixture
-def cluster() -> Iterator[Any]:
-    # Else half a minute is spent on asking the killed worker for what it had.
-    with dask.config.set({"distributed.comm.timeouts.connect": "2s"}), distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
-    ) as running:  # fmt: skip
-        yield running
+def cluster(tmp_path: Path) -> Iterator[Cluster]:
+    said = tmp_path / "scheduler.json"
+    # A try to reach a worker that was killed is over soon.
+    settings = {"DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "2s", "PYTHONPATH": str(ROOT)}
+
+    def start(*words: str) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-m", *words, "--scheduler-file", str(said), "--no-dashboard"]
+        return subprocess.Popen(command, cwd=tmp_path, env=os.environ | settings, stderr=subprocess.DEVNULL)
+
+    processes = [start("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0")]
+    try:
+        processes += [start("distributed.cli.dask_worker", "--no-nanny", "--nthreads", "1") for _ in range(2)]
+        end = time.monotonic() + 60
+        while not said.exists():
+            assert processes[0].poll() is None
+            assert time.monotonic() < end
+            time.sleep(0.05)
+        address = json.loads(said.read_text())["address"]
+        with distributed.Client(address, set_as_default=False) as client:
+            client.wait_for_workers(2, timeout=60)
+        yield Cluster(address, processes[0], processes[1:])
+    finally:
+        for process in processes:
+            process.kill()
+            process.wait()
 
 
 def test_a_killed_worker_and_a_scheduler_that_goes_away_lose_nothing(
-    cluster: Any, tmp_path: Path, expected: dict[str, bytes]
+    cluster: Cluster, tmp_path: Path, expected: dict[str, bytes]
 ) -> None:
-    with distributed.Client(cluster.scheduler_address, set_as_default=False) as client:
-        processes = list(client.run(os.getpid).values())
-    assert len(set(processes)) == 2
-    assert os.getpid() not in processes
     killed = []
 
-    def kill(progress: BuildProgress) -> None:
+    def kill_a_worker(progress: BuildProgress) -> None:
         if progress.done >= COUNT // 4 and not killed:
-            os.kill(processes[0], signal.SIGKILL)
+            cluster.workers[0].kill()
             killed.append(progress.done)
 
-    found = build(SOURCES, COUNT, tmp_path / "one", chunk=CHUNK, scheduler=cluster.scheduler_address, on_progress=kill)
+    found = build(SOURCES, COUNT, tmp_path / "one", chunk=CHUNK, scheduler=cluster.address, on_progress=kill_a_worker)
     assert killed
     assert killed[0] < COUNT
+    assert cluster.workers[0].wait(10) == -signal.SIGKILL
     assert files_of(found) == expected
 
-    def leave(progress: BuildProgress) -> None:
+    def kill_the_scheduler(progress: BuildProgress) -> None:
         if progress.done >= COUNT // 4:
-            cluster.close()
+            cluster.scheduler.kill()
 
     lib = tmp_path / "two"
     with pytest.raises(InputError, match=r"scheduler tcp://.* went away; what is done is kept"):
-        build(SOURCES, COUNT, lib, chunk=CHUNK, scheduler=cluster.scheduler_address, on_progress=leave)
+        build(SOURCES, COUNT, lib, chunk=CHUNK, scheduler=cluster.address, on_progress=kill_the_scheduler)
     kept = len(list(part_of(lib).rglob("*.chunk")))
     assert COUNT // CHUNK // 4 <= kept < COUNT // CHUNK
     assert files_of(build(SOURCES, COUNT, lib, chunk=CHUNK, workers=1)) == expected

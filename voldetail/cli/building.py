@@ -34,12 +34,3 @@ def teller(view: ProgressView, last: list[BuildProgress], what: str = "") -> Cal
         view.step(f"{what}{progress.stage}: {progress.done} of {progress.total} entries{time_left}")
 
     return tell
-
-
-def size_words(count: float) -> str:
-    """Bytes in words."""
-    for unit in ("bytes", "kB", "MB"):
-        if count < 1000:
-            return f"{count:.3g} {unit}"
-        count /= 1000
-    return f"{count:.3g} GB"

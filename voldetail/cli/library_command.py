@@ -7,20 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.table import Table
-from rich.text import Text
 
-from voldetail.cli.building import size_words, teller
+from voldetail.cli.building import teller
 from voldetail.cli.console import output, remarks
+from voldetail.cli.library_info import info, size_on_disk
 from voldetail.detail.parameters import nearest
-from voldetail.detail.refusal import printable, shown
 from voldetail.errors import InputError
 
 if TYPE_CHECKING:
     from voldetail.library.build import BuildProgress
-    from voldetail.library.layout import SourceRecord
     from voldetail.library.source import Source
-    from voldetail.library.store import Header
 
 ALL = "all"
 SAMPLINGS = ("random", "grid")
@@ -73,7 +69,7 @@ def build(
     _check_room(out, plan.bytes, part_of(out))
     kind = "series of reliefs" if plan.measure == "reliefs" else "models" if len(sources) > 1 else "model"
     of = f"{plan.entries} entries of {len(sources)} {kind}"
-    remarks().print(f"{of}, {size_words(plan.bytes)} on disk and twice that while building.", markup=False, soft_wrap=True)
+    remarks().print(f"{of}, {size_on_disk(plan.bytes)} on disk and twice that while building.", markup=False, soft_wrap=True)
     last: list[BuildProgress] = []
     with ProgressView(remarks()) as view:
         tell = teller(view, last)
@@ -93,7 +89,7 @@ def build(
     if end.rate:
         speed = f": {end.rate:.3g} entries a second, a million would take {PROJECTED / end.rate / 3600:.2g} hours here"
     output().print(
-        f"{out}  {plan.entries} entries, {size_words(plan.bytes)}, {duration(end.seconds)}{speed}", markup=False, soft_wrap=True
+        f"{out}  {plan.entries} entries, {size_on_disk(plan.bytes)}, {duration(end.seconds)}{speed}", markup=False, soft_wrap=True
     )
     if indexed:
         _index(out)
@@ -105,39 +101,7 @@ def index(library: Annotated[Path, typer.Argument(metavar="LIB", help="A library
     _index(library)
 
 
-@library_app.command()
-def info(
-    library: Annotated[Path, typer.Argument(metavar="LIB", help="A library, as library build makes it.")],
-    check: Annotated[bool, typer.Option("--check", help="Read everything and hold it against its hashes.")] = False,
-) -> None:
-    """Say what is in a library, how it was made, and whether this voldetail can still use it."""
-    from voldetail.library.store import read_header
-
-    header = read_header(library)
-    table = Table(box=None, padding=(0, 2, 0, 0))
-    for heading in ("source", "entries", "numbers", "sampling", "seed", "current"):
-        table.add_column(heading, no_wrap=heading != "numbers")
-    for name, record in header.sources.items():
-        sampling = record.definition.get("sampling")
-        words = (
-            name, str(record.entries), ", ".join(record.keys), sampling if isinstance(sampling, str) else "", str(record.seed),
-            _current(name, record),
-        )  # fmt: skip
-        table.add_row(*(Text(printable(word)) for word in words))
-    output().print(table)
-    version = shown(header.record.descriptor.get("version"))
-    state = f"out of date: {header.stale} are not this voldetail's; build it again" if header.stale else "current"
-    for label, text in (
-        ("entries", f"{header.entries}, {size_words(header.bytes)} on disk"),
-        ("descriptor", f"version {version}, {header.record.descriptor_sha256[:12]}"),
-        ("weights", f"w_global {header.w_global:g}"),
-        ("library", f"{header.sha256[:12]}, {state}"),
-        ("index", "there" if (library / "index").is_file() else "none"),
-    ):
-        output().print(f"{label + ':':12}{text}", markup=False, soft_wrap=True)
-    if check:
-        _check(header)
-        output().print("checked:    every number is the one that was written.", markup=False)
+library_app.command()(info)
 
 
 def sources_of(what: list[str], sampling: str, seed: int) -> list[Source]:
@@ -163,9 +127,9 @@ def sources_of(what: list[str], sampling: str, seed: int) -> list[Source]:
 
 
 def _counts(sources: list[Source], count: int | None) -> list[int]:
-    from voldetail.start import ENTRIES
-
     if sources[0].measure == "reliefs":
+        from voldetail.start import ENTRIES
+
         return [count or ENTRIES] * len(sources)
     grids = [getattr(source, "most", None) for source in sources]
     if count is None and None in grids:
@@ -184,44 +148,9 @@ def _check_room(out: Path, needed: int, part: Path) -> None:
         return
     if usage.total > 0 and usage.free < 2 * needed - there:
         raise InputError(
-            f"Cannot build {out}: {size_words(2 * needed - there)} are needed there while building and "
-            f"{size_words(usage.free)} are free; free some space, give fewer --entries or another disk."
+            f"Cannot build {out}: {size_on_disk(2 * needed - there)} are needed there while building and "
+            f"{size_on_disk(usage.free)} are free; free some space, give fewer --entries or another disk."
         )
-
-
-def _current(name: str, record: SourceRecord) -> str:
-    """Whether the entries are those that this voldetail would make."""
-    from voldetail.library.source import StructureSource
-    from voldetail.library.vectors import COMPLETE_SIDE
-    from voldetail.start import ReliefSource
-    from voldetail.texture.structures import MODELS
-
-    elevation = record.definition.get("elevation")
-    if record.definition.get("kind") == "relief" and isinstance(elevation, int):
-        return "yes" if record.definition == ReliefSource(elevation, record.seed).definition else "no, other reliefs"
-    side = record.definition.get("side")
-    if record.definition.get("kind") != "structure" or name not in MODELS or not isinstance(side, int):
-        return "not known here"
-    grid = record.definition.get("sampling") == "grid"
-    now = StructureSource(MODELS[name], record.seed, "grid" if grid else "random", max(side, COMPLETE_SIDE))
-    return "yes" if record.definition == now.definition else "no, another model"
-
-
-def _check(header: Header) -> None:
-    from voldetail.cli.progress import LINE_SECONDS, ProgressView
-    from voldetail.library.check import check
-    from voldetail.library.store import open_library
-
-    with ProgressView(remarks()) as view:
-        last = view.clock()
-
-        def tell(entries: int) -> None:
-            nonlocal last
-            if view.live is not None or view.clock() - last >= LINE_SECONDS:
-                last = view.clock()
-                view.step(f"checking: {entries} of {header.entries} entries")
-
-        check(open_library(header.path), tell)
 
 
 def _index(path: Path) -> None:
@@ -234,4 +163,4 @@ def _index(path: Path) -> None:
         view.step("making the index")
         total = library.header.entries
         made = write_index(library, lambda done: view.step(f"making the index: {done} of {total} entries"))
-    output().print(f"{made}  {size_words(made.stat().st_size)}", markup=False, soft_wrap=True)
+    output().print(f"{made}  {size_on_disk(made.stat().st_size)}", markup=False, soft_wrap=True)

@@ -31,8 +31,8 @@ RERANKED = 4
 seventh digit of a'W a, which matters between near neighbours only."""
 
 COLUMNS = 1024
-"""Outlines in one product: so few that they stay in the processor's cache and OpenBLAS keeps to the calling thread. Five times as
-fast as all at once on two cores, and on a busy machine, where threads wait for each other, a hundred times."""
+"""Outlines in one product: so few that they stay in the processor's cache and that OpenBLAS keeps to the calling thread. In one
+thread five times as fast as all at once; on a busy machine, pieces just too large for one take a hundred times as long."""
 
 SLACK = 1e-3
 """Added to the bound on D^2 for the same reason: a hundred times what random tables showed."""
