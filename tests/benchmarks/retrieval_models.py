@@ -1,7 +1,7 @@
 """Whether known pictures are found again, in parameters, model and looks: `python -m tests.benchmarks.retrieval_models [FOLDER]`.
 
 A library of 400 random entries of each of the 12 models; 200 random pictures of each that are not in it, with another seed of
-the noise, as they are, and 100 of them disturbed in six ways. FOLDER (a temporary one by default) keeps descriptors, so that a
+the noise, as they are, and 50 of them disturbed in six ways. FOLDER (a temporary one by default) keeps descriptors, so that a
 run that was stopped goes on. Writes results/retrieval/models.json and confusion.png; most of the time goes to descriptors.
 """
 
@@ -24,7 +24,7 @@ from voldetail.library.groups import Group
 from voldetail.texture.structures import MODELS, StructureModel
 
 RESULTS = Path(__file__).resolve().parents[2] / "results" / "retrieval"
-ENTRIES, PLAIN, DISTURBED = 400, 200, 100
+ENTRIES, PLAIN, DISTURBED = 400, 200, 50
 Floats = NDArray[np.float64]
 
 
