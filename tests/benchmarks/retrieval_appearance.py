@@ -15,6 +15,7 @@ from voldetail.library import nearest, random_values, structure_map
 from voldetail.library.answers import Answer
 from voldetail.library.entries import SIDE
 from voldetail.library.groups import Group
+from voldetail.library.span import span_of, spanned
 from voldetail.metric import describe, distance
 from voldetail.texture.structures import MODELS, structure
 
@@ -45,7 +46,7 @@ def appearance(folder: Path, groups: dict[str, Group], asked: dict[str, Queries]
 def _compared(group: Group, asked: Queries, k: int) -> dict[str, float]:
     model = MODELS[group.model]
     values = random_values(model, k, QUERY_SEED)
-    reference = describe(to_linear(structure(model, values, SIDE, seed=QUERY_SEED)))
+    reference = describe(to_linear(_shown(structure(model, values, SIDE, seed=QUERY_SEED))))
     first = nearest(group.table, asked.vectors[k], 1)[0]
     apart = np.sum(gaps(model, shares(model, group.values[:]), asked.shares[k]) ** 2, axis=1)
     near, chance = int(np.argmin(apart)), k
@@ -53,8 +54,13 @@ def _compared(group: Group, asked: Queries, k: int) -> dict[str, float]:
     s = structure_map(answer)
     pictures: dict[str, NDArray[np.float32]] = {
         "first_answer": 1 - s if first.swapped else s,
-        "nearest_entry": structure(model, group.parameters(near), SIDE, seed=group.seed),
-        "random_entry": structure(model, group.parameters(chance), SIDE, seed=group.seed),
-        "other_seed": structure(model, values, SIDE, seed=OTHER_SEED),
+        "nearest_entry": _shown(structure(model, group.parameters(near), SIDE, seed=group.seed)),
+        "random_entry": _shown(structure(model, group.parameters(chance), SIDE, seed=group.seed)),
+        "other_seed": _shown(structure(model, values, SIDE, seed=OTHER_SEED)),
     }
     return {key: distance(reference, describe(to_linear(s), like=reference)) for key, s in pictures.items()}
+
+
+def _shown(s: NDArray[np.float32]) -> NDArray[np.float32]:
+    """On a photo's scale, as pictures of answers are."""
+    return spanned(s, span_of(s))

@@ -1,8 +1,11 @@
-"""Whether known pictures are found again, in parameters, model and looks: `python -m tests.benchmarks.retrieval_models [FOLDER]`.
+"""Whether known pictures are found again, in parameters, model and looks:
 
-A library of 400 random entries of each of the 12 models; 200 random pictures of each that are not in it, with another seed of
-the noise, as they are, and 100 of them disturbed in six ways. FOLDER (a temporary one by default) keeps descriptors, so that a
-run that was stopped goes on. Writes results/retrieval/models.json and confusion.png; most of the time goes to descriptors.
+    python -m tests.benchmarks.retrieval_models [FOLDER [ENTRIES [PLAIN [DISTURBED]]]]
+
+A library of ENTRIES (400) random entries of each of the 12 models; PLAIN (200) random pictures of each that are not in it, with
+another seed of the noise, as they are, and DISTURBED (50) of them in each of six ways. FOLDER (a temporary one by default) keeps
+descriptors, so that a run that was stopped goes on; give another for other numbers. Writes results/retrieval/models.json and
+confusion.png; most of the time goes to descriptors, some 15 a second on two free cores.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ from voldetail.library.groups import Group
 from voldetail.texture.structures import MODELS, StructureModel
 
 RESULTS = Path(__file__).resolve().parents[2] / "results" / "retrieval"
-ENTRIES, PLAIN, DISTURBED = 400, 200, 100
+ENTRIES, PLAIN, DISTURBED = 400, 200, 50
 Floats = NDArray[np.float64]
 
 
@@ -54,17 +57,17 @@ def library(folder: Path, count: int = ENTRIES) -> dict[str, Group]:
     return found
 
 
-def asked(folder: Path, change: str) -> dict[str, Queries]:
-    """Each model's queries under a disturbance."""
+def asked(folder: Path, change: str, count: int) -> dict[str, Queries]:
+    """Each model's first ``count`` queries under a disturbance."""
     found = {}
     for name in MODELS:
 
         def made(name: str = name) -> dict[str, Any]:
-            q = queries(name, change, PLAIN if change == "plain" else DISTURBED)
+            q = queries(name, change, count)
             return {"shares": q.shares, "vectors": q.vectors}
 
         stored = kept(folder, f"q {name} {change}", made)
-        found[name] = Queries(stored["shares"], stored["vectors"])
+        found[name] = Queries(stored["shares"][:count], stored["vectors"][:count])
     return found
 
 
@@ -128,21 +131,25 @@ def right(counts: NDArray[np.intp]) -> float:
 
 def main() -> None:
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(gettempdir()) / "voldetail-retrieval"
+    given = [int(word) for word in sys.argv[2:5]]
+    count, plain, disturbed = [*given, *(ENTRIES, PLAIN, DISTURBED)[len(given) :]]
     folder.mkdir(parents=True, exist_ok=True)
     RESULTS.mkdir(parents=True, exist_ok=True)
-    groups = library(folder)
+    groups = library(folder, count)
     typical = typical_distances(groups)
-    report: dict[str, Any] = {"entries": ENTRIES, "models": list(groups), "typical_distance": typical, "changes": {}}
+    report: dict[str, Any] = {
+        "entries": count, "pictures": [plain, disturbed], "models": list(groups), "typical_distance": typical, "changes": {},
+    }  # fmt: skip
     pictures = {}
     for change in CHANGES:
-        of = asked(folder, change)
+        of = asked(folder, change, plain if change == "plain" else disturbed)
         truth, distances = nearest_of_each(groups, of)
-        plain = confusion(truth, distances)
+        counts = confusion(truth, distances)
         calibrated = confusion(truth, distances / np.array(list(typical.values())))
         own = distances[np.arange(len(truth)), truth]
-        pictures[change] = plain
+        pictures[change] = counts
         report["changes"][change] = {
-            "right_model": right(plain), "right_model_calibrated": right(calibrated), "confusion": plain.tolist(),
+            "right_model": right(counts), "right_model_calibrated": right(calibrated), "confusion": counts.tolist(),
             "own_model_distance": {
                 str(q): float(np.quantile(own, q)) for q in (0.05, 0.5, 0.9, 0.95, 0.99, 1.0)
             },
@@ -151,8 +158,8 @@ def main() -> None:
             },
             "models": {name: parameters_found(groups[name], of[name]) for name in groups},
         }  # fmt: skip
-        print(change, f"{right(plain):.1%} of models right, calibrated {right(calibrated):.1%}", flush=True)
-    report["appearance"] = appearance(folder, groups, asked(folder, "plain"))
+        print(change, f"{right(counts):.1%} of models right, calibrated {right(calibrated):.1%}", flush=True)
+    report["appearance"] = appearance(folder, groups, asked(folder, "plain", plain))
     (RESULTS / "models.json").write_text(json.dumps(_rounded(report), indent=1) + "\n")
     shown = {name: pictures[name] for name in ("plain", "turned", "two tones", "jpeg")}
     draw_confusion(RESULTS / "confusion.png", list(groups), shown)

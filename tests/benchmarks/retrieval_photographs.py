@@ -1,4 +1,4 @@
-"""Photographs and the structures found for them: `python -m tests.benchmarks.retrieval_photographs [FOLDER]`.
+"""Photographs and the structures found for them: `python -m tests.benchmarks.retrieval_photographs [FOLDER [ENTRIES]]`.
 
 Writes results/retrieval/photographs.json, sheet_*.jpg for photographs that may be shown, and the sheets of the others to FOLDER,
 where descriptors of the library are kept as well (see `retrieval_models`). Rows: photo, its structure map, and the best entry of
@@ -18,7 +18,7 @@ import matplotlib
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.benchmarks.retrieval_models import RESULTS, library
+from tests.benchmarks.retrieval_models import ENTRIES, RESULTS, library
 from tests.benchmarks.retrieval_photos import Sought, ready, there
 from voldetail.image import luminance, to_srgb
 from voldetail.library import Answer, Familiarity, Query, familiarity, picture, rank
@@ -51,7 +51,7 @@ def sheet(path: Path, rows: list[tuple[Sought, Query, list[Answer], bool]]) -> N
     """Write a sheet of photographs and answers as a JPEG."""
     figure, axes = plt.subplots(len(rows), 2 + SHOWN, figsize=(2.5 * (2 + SHOWN), 2.75 * len(rows)), squeeze=False)
     for line, (sought, asked, found, known) in zip(axes, rows, strict=True):
-        about = f"{sought.name}{'' if known else ': no answer is near'}\n{sought.credit}"
+        about = f"{sought.name}{'' if known else ': nothing quite like it'}\n{sought.credit}"
         _show(line[0], to_srgb(asked.photo), about)
         share = f"structure\n{asked.tones.explained:.0%} in two tones"
         _show(line[1], np.repeat(asked.tones.structure[..., None], 3, axis=2), share)
@@ -74,7 +74,7 @@ def main() -> None:
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(gettempdir()) / "voldetail-retrieval"
     folder.mkdir(parents=True, exist_ok=True)
     RESULTS.mkdir(parents=True, exist_ok=True)
-    groups = library(folder)
+    groups = library(folder, int(sys.argv[2]) if len(sys.argv) > 2 else ENTRIES)
     rows, report = [], {}
     for sought in there():
         asked = ready(sought)

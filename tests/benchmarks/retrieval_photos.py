@@ -9,7 +9,7 @@ from pathlib import Path
 from tests.benchmarks.relit import SHARED
 from voldetail.image import load_photo
 from voldetail.library import Query, query
-from voldetail.library.query import TRIM
+from voldetail.library.span import TRIM
 
 SKIMAGE, POLY, DUION, PETRY = (
     "CC0, scikit-image", "CC0, Poly Haven and ambientCG", "CC-BY 3.0, Christian Femmer aka Duion", "MIT, Christian Petry",

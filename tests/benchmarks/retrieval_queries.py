@@ -13,7 +13,7 @@ from PIL import Image
 from voldetail.image import to_linear, to_srgb
 from voldetail.library import random_values, recolour, two_tone, vector_of
 from voldetail.library.entries import SIDE
-from voldetail.library.query import TRIM
+from voldetail.library.span import TRIM, span_of, spanned
 from voldetail.texture.structures import MODELS, StructureModel, structure
 
 Array = NDArray[np.float32]
@@ -88,8 +88,10 @@ def queries(name: str, change: str, count: int) -> Queries:
     """Return the first ``count`` queries of a model under one disturbance."""
     model = MODELS[name]
     values = [random_values(model, k, QUERY_SEED) for k in range(count)]
-    return Queries(shares(model, np.array([list(v.values()) for v in values])),
-                   np.stack([vector_of(picture(model, k, change)) for k in range(count)]))  # fmt: skip
+    pictures = (picture(model, k, change) for k in range(count))
+    # On a photo's scale, as all that is looked for.
+    vectors = np.stack([vector_of(spanned(s, span_of(s))) for s in pictures])
+    return Queries(shares(model, np.array([list(v.values()) for v in values])), vectors)
 
 
 def shares(model: StructureModel, values: NDArray[np.float64]) -> NDArray[np.float64]:

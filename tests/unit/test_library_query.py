@@ -7,9 +7,10 @@ import pytest
 
 from voldetail.errors import InputError
 from voldetail.image import resize, to_srgb
-from voldetail.library import entries, familiarity, picture, query, rank, recolour, table, vector_of
+from voldetail.library import distance, entries, familiarity, picture, query, rank, recolour, table, texture_of, vector_of
 from voldetail.library.groups import Group
 from voldetail.library.query import ALL_SCALES_SIDE
+from voldetail.library.span import span_of, spanned
 from voldetail.texture.structures import MODELS, structure
 
 SIDE = 128
@@ -81,6 +82,35 @@ def test_a_known_picture_is_found_and_its_answer_is_that_picture(
     assert np.abs(made - shown).mean() < 0.05
     mirrored = replace(best, rotation=np.pi - best.rotation)
     assert np.corrcoef(to_srgb(picture(mirrored, SIDE)).ravel(), shown.ravel())[0, 1] < 0.9
+
+
+def test_a_model_that_uses_half_of_its_range_is_as_near_to_a_photo_of_itself() -> None:
+    model = MODELS["turbulenceridge"]
+    made = entries(model, 0, 6, side=SIDE)
+    group = Group(model.name, tuple(p.key for p in model.parameters), made.values, table(made.vectors), made.seed)
+    s = structure(model, group.parameters(4), SIDE)
+    low, high = span_of(s)
+    assert high - low < 0.9
+    assert np.mean(s < low) == pytest.approx(0.005, abs=1e-3)
+    assert np.mean(s > high) == pytest.approx(0.005, abs=1e-3)
+    photo = recolour(s, DARK, BRIGHT)
+    asked = query(photo)
+    best = rank({model.name: group}, asked.vector, 1, tones=(asked.tones.dark, asked.tones.bright)).answers[0]
+    assert best.entry == 4
+    assert best.distance < 0.02
+    assert distance(vector_of(s), asked.vector) > 5 * best.distance
+    # The tones are the photo's and not the model's ends, and so is the picture.
+    assert np.abs(to_srgb(picture(best, SIDE)) - to_srgb(photo)).mean() < 0.01
+    texture = texture_of(best, (SIDE, SIDE))
+    assert texture.span == pytest.approx(span_of(structure(model, group.parameters(4), 256)), abs=1e-6)
+
+
+def test_a_map_of_one_value_has_a_span() -> None:
+    flat = np.full((40, 40), 0.3, np.float32)
+    assert np.isfinite(spanned(flat, span_of(flat))).all()
+    speck = flat.copy()
+    speck[3, 3] = 0.9
+    assert span_of(speck) == pytest.approx((0.3, 0.9))
 
 
 def test_specks_do_not_decide_on_the_tones(groups: dict[str, Group]) -> None:

@@ -14,6 +14,7 @@ from voldetail.detail.texture_file import load_example, load_texture, save_textu
 from voldetail.errors import InputError
 from voldetail.image import to_srgb
 from voldetail.library import recolour
+from voldetail.library.span import spanned
 from voldetail.scene.colour_plugin import colour_dict
 from voldetail.scene.pigment import coloured as pigment
 from voldetail.scene.pigment import factors_of
@@ -22,13 +23,14 @@ from voldetail.texture.picture import default_float
 from voldetail.texture.structures import MODELS, checked_structure, structure
 
 ZERO, ONE = (0.1, 0.3, 0.2), (0.9, 0.5, 0.7)
+SPAN = (0.1, 0.8)
 ROWS, COLUMNS = 40, 56
 
 
 def texture_of(name: str, rotation: float = 0.7, seed: int = 5) -> StructureTexture:
     parameters = {p.key: p.at(0.4) for p in MODELS[name].parameters}
     return StructureTexture(
-        model=name, parameters=parameters, seed=seed, rotation=rotation, zero=ZERO, one=ONE, texels=(256, 192)
+        model=name, parameters=parameters, seed=seed, rotation=rotation, span=SPAN, zero=ZERO, one=ONE, texels=(256, 192)
     )  # fmt: skip
 
 
@@ -38,7 +40,7 @@ def test_every_model_is_the_picture_that_numpy_makes(name: str) -> None:
     made = picture(texture, (COLUMNS, ROWS))
     # The texel (0, 0) is the lower left pixel's middle.
     s = structure(MODELS[name], texture.parameters, (ROWS, COLUMNS), rotation=0.7, seed=5, offset=(0.5 - ROWS, -0.5))
-    expected = recolour(s, ZERO, ONE)
+    expected = recolour(spanned(s, SPAN), ZERO, ONE)
     assert s.std() > 0.02
     # Two libraries' sines differ in the last digit, which moves an edge here and there by a little.
     apart = np.abs(to_srgb(made) - to_srgb(expected)).max(axis=2)
@@ -122,6 +124,7 @@ def test_a_file_comes_back(tmp_path: Path) -> None:
         ({"one": [0.1, 0.2, 1.5]}, r"one\[2\] = 1.5 is out of range"),
         ({"rotation": 7.0}, "rotation = 7.0 is out of range"),
         ({"seed": -1}, "seed"),
+        ({"span": [0.5, 0.5]}, "span's second number has to be over its first"),
         ({"texels": [0, 5]}, "texels"),
         ({"turn": 1}, "no setting turn"),
         ({"parameters": {"length": "9"}}, "parameters"),

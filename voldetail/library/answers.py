@@ -13,6 +13,7 @@ from voldetail.errors import InputError
 from voldetail.library.compare import nearest
 from voldetail.library.entries import SIDE
 from voldetail.library.groups import Group, Groups
+from voldetail.library.span import Span, span_of, spanned
 from voldetail.library.two_tone import recolour
 from voldetail.texture.structures import MODELS, structure
 
@@ -27,9 +28,9 @@ WHITE: Tone = (1.0, 1.0, 1.0)
 class Answer:
     """An entry that is near a photo.
 
-    model, entry, seed, parameters: what makes the entry's structure map s. rotation: radians by which it has to be turned,
-    counter-clockwise, 0 to pi. swapped: whether the roles of the tones are exchanged. distance: D (equation 6). zero, one:
-    the tones, sRGB-encoded, of s = 0 and s = 1, exchanged already where ``swapped``.
+    model, entry, seed, parameters: what makes the entry's structure map. rotation: radians by which it has to be turned,
+    counter-clockwise, 0 to pi. swapped: whether the roles of the tones are exchanged. distance: D (equation 6). zero, one: the
+    tones, sRGB-encoded, where the map is 0 and 1, exchanged already where ``swapped``.
     """
 
     model: str
@@ -79,10 +80,17 @@ def picture(answer: Answer, size: int | tuple[int, int] = SIDE) -> Array:
 
 
 def structure_map(answer: Answer, size: int | tuple[int, int] = SIDE) -> Array:
-    """Return the structure map s (H, W) of an answer, turned as found; its tones are not swapped. See `picture`."""
+    """Return the structure map s (H, W) of an answer on the scale of 0 to 1 that it was compared on (see `span`), turned as
+    found; its tones are not swapped. See `picture`."""
+    span = entry_span(answer)
+    return spanned(structure(MODELS[answer.model], answer.parameters, size, rotation=answer.rotation, seed=answer.seed), span)
+
+
+def entry_span(answer: Answer) -> Span:
+    """Return the span of the entry's picture in the library, of 256 pixels. Raises InputError for no structure model's."""
     if answer.model not in MODELS:
-        raise InputError(f"{answer.model!r} is no structure model and has no picture of this kind.")
-    return structure(MODELS[answer.model], answer.parameters, size, rotation=answer.rotation, seed=answer.seed)
+        raise InputError(f"{answer.model!r} is no structure model and has no picture.")
+    return span_of(structure(MODELS[answer.model], answer.parameters, SIDE, seed=answer.seed))
 
 
 def texture_of(answer: Answer, size: tuple[int, int] = (SIDE, SIDE), photo: str = "") -> StructureTexture:
@@ -91,11 +99,10 @@ def texture_of(answer: Answer, size: tuple[int, int] = (SIDE, SIDE), photo: str 
     size: rows and columns of the photo as it was compared, so that a texel is a pixel of it; photo: its file's name. Raises
     InputError for an answer that is no structure model's.
     """
-    if answer.model not in MODELS:
-        raise InputError(f"{answer.model!r} is no structure model and makes no texture of this kind.")
+    span = entry_span(answer)
     return StructureTexture(
         name=answer.model, model=answer.model, parameters=dict(answer.parameters), seed=answer.seed, rotation=answer.rotation,
-        zero=answer.zero, one=answer.one, texels=(size[1], size[0]), photo=photo[:400],
+        span=span, zero=answer.zero, one=answer.one, texels=(size[1], size[0]), photo=photo[:400],
     )  # fmt: skip
 
 

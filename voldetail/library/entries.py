@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.errors import InputError
+from voldetail.library.span import span_of, spanned
 from voldetail.library.vectors import LENGTH, vector_of
 from voldetail.texture.structures import StructureModel, structure
 
@@ -70,9 +71,13 @@ def grid_values(model: StructureModel, k: int) -> dict[str, float]:
 def entry(
     model: StructureModel, k: int, seed: int = 0, sampling: Sampling = "random", side: int = SIDE
 ) -> tuple[dict[str, float], NDArray[np.float32]]:
-    """Return the parameters of entry ``k`` and the descriptor (750,) of its picture, of ``side`` pixels, noise of ``seed``."""
+    """Return the parameters of entry ``k`` and the descriptor (750,) of its picture, of ``side`` pixels, noise of ``seed``.
+
+    The picture is described on the scale of 0 to 1 that photos have, see `span`.
+    """
     values = grid_values(model, k) if sampling == "grid" else random_values(model, k, seed)
-    return values, vector_of(structure(model, values, side, seed=seed))
+    s = structure(model, values, side, seed=seed)
+    return values, vector_of(spanned(s, span_of(s)))
 
 
 def entries(

@@ -14,6 +14,7 @@ from voldetail.library.answers import Answer
 from voldetail.library.compare import nearest
 from voldetail.library.entries import SIDE, random_values
 from voldetail.library.groups import Group
+from voldetail.library.span import span_of, spanned
 from voldetail.library.vectors import vector_of
 from voldetail.texture.structures import MODELS, structure
 
@@ -60,6 +61,7 @@ def familiarity(
         return None
     found = []
     for k in range(PICTURES):
-        vector = vector_of(structure(model, random_values(model, k, OWN_SEED), side, seed=OWN_SEED))
+        s = structure(model, random_values(model, k, OWN_SEED), side, seed=OWN_SEED)
+        vector = vector_of(spanned(s, span_of(s)))
         found.append(nearest(group.table, vector, 1, rotations=rotations, swap=swap)[0].distance)
     return Familiarity(answer.model, answer.distance, max(found))

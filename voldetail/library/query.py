@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from voldetail.errors import InputError
 from voldetail.image import resize, resize_mask
 from voldetail.library.entries import SIDE
+from voldetail.library.span import TRIM
 from voldetail.library.two_tone import TwoTone, two_tone
 from voldetail.library.vectors import SMALLEST_SIDE, vector_of
 from voldetail.metric.gabor import REACH, SIGMAS
@@ -21,10 +22,6 @@ from voldetail.texture.analysis import pixels_of
 
 Array = NDArray[np.float32]
 Zone = tuple[int, int, int, int]
-
-TRIM = 0.005
-"""Share of a photo's pixels, at either end, that may lie beyond its tones. The paper takes the extreme pixels; a speck then
-leaves the rest a contrast that no entry has, and sand becomes streaks. Tuned on 34 photographs, see results/retrieval."""
 
 LARGEST_SIDE = 2048
 """Pixels of a photo that is described: seconds and some hundred MB."""

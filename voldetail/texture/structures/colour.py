@@ -1,10 +1,11 @@
 """The colour of a two-tone structure at any point of a plane or a surface, on Dr.Jit arrays.
 
-    colour(x) = decode((1 - s) zero + s one),      s = s_a(R_-rotation x)              (GKHF14 equations 2 and 3)
+    colour(x) = decode((1 - s) zero + s one),      s = (s_a(R_-rotation x) - low) / (high - low), held in [0, 1]
 
-A structure is of the plane. On a surface without parameters it is seen from three sides, s = sum_i w_i s(x_i) with the planes
-of `noise.triplanar` and w_i = n_i^8 / sum_j n_j^8: steeper weights than a noise needs, since two structures blended are neither.
-Nothing is averaged over a pixel: the models' edges are a texel wide, so a texel should not be less than a pixel.
+(GKHF14 equations 2 and 3, see `detail.structure_texture`.) A structure is of the plane. On a surface without parameters it is
+seen from three sides, s = sum_i w_i s(x_i) with the planes of `noise.triplanar` and w_i = n_i^8 / sum_j n_j^8: steeper weights
+than a noise needs, since two structures blended are neither. Nothing is averaged over a pixel: the models' edges are a texel
+wide, so a texel should not be less than a pixel.
 """
 
 from __future__ import annotations
@@ -44,9 +45,11 @@ def structure_colour(
     """
     model, values = checked_structure(texture)
     c, s = cos(texture.rotation), sin(texture.rotation)
+    low, high = texture.span
 
     def at(x: Any, y: Any) -> Any:
-        return model.evaluate(c * x + s * y, c * y - s * x, values, texture.seed)
+        own = model.evaluate(c * x + s * y, c * y - s * x, values, texture.seed)
+        return dr.clip((own - low) * (1.0 / (high - low)), 0.0, 1.0)
 
     if len(points) == 2 or normals is None:
         share = at(points[0], points[1])
