@@ -12,6 +12,7 @@ from voldetail.errors import InputError
 from voldetail.library import Library, nearest, open_library, swapped, turned
 from voldetail.library.build import build
 from voldetail.library.index import ENTRIES_A_CELL, HEAD, nearest_by_index, open_index, write_index
+from voldetail.library.measures import MeasureName
 from voldetail.library.source import Chunk
 
 COUNT = 12 * ENTRIES_A_CELL + 7
@@ -24,6 +25,7 @@ class Clouds:
     name: str = "clouds"
     keys: tuple[str, ...] = ("number",)
     seed: int = 0
+    measure: MeasureName = "structures"
     parallel: bool = False
     definition: dict[str, Any] = field(default_factory=dict)
 

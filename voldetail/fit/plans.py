@@ -55,7 +55,7 @@ of about a minute on two cores."""
 VOLUME_EFFORT = Effort(220, ((8, 40, False), (5, 60, False), (3, 80, False), (2, 50, True)), 60)
 """A picture of a volume at full resolution takes as long as ten of a relief: for a fit of under three minutes."""
 
-STARTED_EFFORT = Effort(0, ((6, 40, False), (3, 50, True), (2, 60, True)), 70)
+STARTED_EFFORT = Effort(0, ((6, 40, False), (3, 50, True), (2, 60, True)), 100)
 """From starts that were chosen of thousands: what covering the space and its first rounds would find is there already."""
 
 WORTH_A_SEARCH = 1.4
@@ -96,7 +96,8 @@ def default_plan(
 
         def run(session: Session) -> None:
             session.pool = session.pool[:count]
-            _refine_pool(session, scaled(each), fine=fine)
+            # Where fewer are worth it, they get what the others would have had.
+            _refine_pool(session, scaled(each * count // max(len(session.pool), 1)), fine=fine)
             if fine or rounds[index + 1][2]:
                 # What goes on to full resolution is chosen there: families that tie at half of it do not at full.
                 _rank(session)
