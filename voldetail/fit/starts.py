@@ -8,6 +8,10 @@ from dataclasses import dataclass
 from voldetail.fit.candidates import Candidate
 from voldetail.fit.space import Kind, Space
 
+SPREAD = 0.12
+"""How far a search from a start looks at first, of each number's range. Tuned on six photographs: with the 0.2 of candidates that
+only cover the space it ended farther away on five of them, by up to a quarter."""
+
 
 @dataclass(frozen=True)
 class Start:
@@ -18,4 +22,4 @@ class Start:
 
     def candidate(self, space: Space) -> Candidate:
         """Return the point of ``space``, numbers held within its ranges."""
-        return Candidate(self.kind, space.encode(self.kind, dict(self.values)))
+        return Candidate(self.kind, space.encode(self.kind, dict(self.values)), spread=SPREAD)
