@@ -22,6 +22,7 @@ from voldetail.report import write_report
 from voldetail.scene.lights_text import parse_light
 from voldetail.scene.setup import Light, Setup
 from voldetail.scene.setup_file import load_setup, setup_from
+from voldetail.start import starts_from
 
 __all__ = [
     "Descriptor",
@@ -60,14 +61,14 @@ def fit(
     ``photo`` is a file or "skimage:gravel" (":grass", ":brick"); ``light`` as on the command line ("AZ,EL", "x,y,z",
     "flash", "point:x,y,z", or "auto" to have it estimated) or a Light. ``options`` are the fields of a Setup, nested ones
     as dictionaries: mask, proxy={"kind": "sphere"}, camera, amplitude, domain, mode="volume", look="medium", seed,
-    fit={"evaluations": 500}, and zone and resolution of the photo. Raises InputError for input that cannot be
+    fit={"evaluations": 500, "library": "none"}, and zone and resolution of the photo. Raises InputError for input that cannot be
     used; Ctrl-C ends the search with the best so far.
     """
     if isinstance(photo, Setup):
-        return fit_setup(photo, on_progress=on_progress)
+        return fit_setup(photo, on_progress=on_progress, starts_for=starts_from)
     if light is None:
         raise InputError('A light is needed: "AZ,EL" in degrees, "x,y,z", "flash", "point:x,y,z" or "auto".')
     source: dict[str, Any] = {"path": str(photo)}
     source |= {key: options.pop(key) for key in ("zone", "resolution", "encoding") if key in options}
     setup = setup_from({"photo": source, "light": light, **options}, "the call of fit")
-    return fit_setup(setup, on_progress=on_progress)
+    return fit_setup(setup, on_progress=on_progress, starts_for=starts_from)

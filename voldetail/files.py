@@ -27,10 +27,10 @@ def atomic(path: Path) -> Iterator[Path]:
         # os.open and not mkstemp: the file gets the permissions that the user's umask asks for.
         os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         yield temporary
-        _flush(temporary)
+        flush(temporary)
         os.replace(temporary, target)
         with suppress(OSError):  # some file systems cannot flush a folder; the file is complete all the same
-            _flush(target.parent)
+            flush(target.parent)
     except OSError as error:
         raise InputError(
             f"Cannot write {path}: {error.strerror or error}; give a folder that exists, is writable and has space."
@@ -89,7 +89,8 @@ def readable(path: str | Path, what: str, max_bytes: int) -> Path:
     return path
 
 
-def _flush(path: Path) -> None:
+def flush(path: Path) -> None:
+    """Bring a file or a folder to the disk. Raises OSError where that is not possible."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

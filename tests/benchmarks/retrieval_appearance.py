@@ -48,7 +48,7 @@ def _compared(group: Group, asked: Queries, k: int) -> dict[str, float]:
     values = random_values(model, k, QUERY_SEED)
     reference = describe(to_linear(_shown(structure(model, values, SIDE, seed=QUERY_SEED))))
     first = nearest(group.table, asked.vectors[k], 1)[0]
-    apart = np.sum(gaps(model, shares(model, group.values), asked.shares[k]) ** 2, axis=1)
+    apart = np.sum(gaps(model, shares(model, group.values[:]), asked.shares[k]) ** 2, axis=1)
     near, chance = int(np.argmin(apart)), k
     answer = Answer(group.model, first.entry, group.seed, group.parameters(first.entry), first.rotation, first.swapped, 0.0)
     s = structure_map(answer)

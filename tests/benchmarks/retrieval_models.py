@@ -74,7 +74,7 @@ def asked(folder: Path, change: str, count: int) -> dict[str, Queries]:
 def parameters_found(group: Group, asked_for: Queries) -> dict[str, Any]:
     """Rank of the entry nearest in parameters among its model's, and errors of parameters, as shares of their ranges."""
     model = MODELS[group.model]
-    stored = shares(model, group.values)
+    stored = shares(model, group.values[:])
     ranks, first, closest, chance = [], [], [], []
     rng = np.random.default_rng(0)
     for wanted, vector in zip(asked_for.shares, asked_for.vectors, strict=True):

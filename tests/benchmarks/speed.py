@@ -22,10 +22,10 @@ from voldetail.detail import with_values
 from voldetail.files import write_text
 from voldetail.fit import fit
 from voldetail.fit.candidates import sampled
-from voldetail.fit.fitter import space_of
 from voldetail.fit.objective import Objective
 from voldetail.fit.reflectance import solve
 from voldetail.fit.session import Progress
+from voldetail.fit.shown import space_of
 from voldetail.fit.target import make_target
 from voldetail.metric import describe, distance
 from voldetail.render import components

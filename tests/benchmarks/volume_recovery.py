@@ -23,9 +23,9 @@ from voldetail.backend import mitsuba
 from voldetail.detail import Detail, Reflectance, rounded
 from voldetail.files import write_text
 from voldetail.fit import fit
-from voldetail.fit.fitter import DEEPEST
 from voldetail.fit.ranges import MEDIUM_ROUGHNESS
 from voldetail.fit.session import derived_seed
+from voldetail.fit.shown import DEEPEST
 from voldetail.fit.space import Kind, Space
 from voldetail.image import Photo, luminance, save_png, to_linear, to_srgb
 from voldetail.metric import describe, distance

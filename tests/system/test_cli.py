@@ -149,7 +149,7 @@ def test_bad_input_leaves_no_folder(
 
 def test_ctrl_c_keeps_the_best_so_far(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    with child("fit", *SMALL, "--evaluations", "4000", "-o", str(out)) as process:
+    with child("fit", *SMALL, "--evaluations", "4000", "--library", "none", "-o", str(out)) as process:
         wait_for(out / "state.json", process)
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)

@@ -14,10 +14,10 @@ from voldetail.detail import Detail
 from voldetail.detail.record import ReliefParameters
 from voldetail.errors import InputError
 from voldetail.fit import FitResult, Progress, fit
-from voldetail.fit.fitter import space_of
 from voldetail.fit.interval import amplitude_interval
 from voldetail.fit.objective import Objective
 from voldetail.fit.session import State
+from voldetail.fit.shown import space_of
 from voldetail.fit.space import Kind
 from voldetail.fit.state_file import load_state, save_state
 from voldetail.fit.target import make_target

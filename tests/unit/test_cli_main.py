@@ -27,7 +27,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().out == f"voldetail {__version__}\n"
 
 
-@pytest.mark.parametrize("words", [["--help"], ["fit", "--help"], ["relight", "-h"], []])
+@pytest.mark.parametrize("words", [["--help"], ["fit", "--help"], ["relight", "-h"], ["library", "build", "-h"], []])
 def test_help(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == 0
     assert "Usage" in capsys.readouterr().out

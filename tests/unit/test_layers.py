@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).resolve().parents[2] / "voldetail"
 LEAVES = {"errors", "files"}
 VERSION = {"voldetail"}  # the package itself, for __version__
 EVERYTHING = {
-    "cli", "report", "apply", "export", "fit", "library", "render", "scene", "texture", "metric", "noise", "detail",
+    "cli", "report", "apply", "export", "start", "fit", "library", "render", "scene", "texture", "metric", "noise", "detail",
     "image", "backend",
 }  # fmt: skip
 ALLOWED: dict[str, set[str]] = {
@@ -21,6 +21,7 @@ ALLOWED: dict[str, set[str]] = {
     "export": {"scene", "render", "detail", "image", "backend"},
     "fit": {"scene", "render", "metric", "texture", "detail", "image", "backend"} | VERSION,
     "library": {"scene", "render", "metric", "texture", "detail", "image", "backend"},  # texture: what it has entries of
+    "start": {"fit", "library", "render", "scene", "metric", "detail", "image", "backend"},  # brings fits and libraries together
     "render": {"scene", "detail", "backend"},  # scene: what it renders; detail: the reflectance it is seen with
     "scene": {"noise", "texture", "detail", "image", "backend"},
     "texture": {"noise", "detail", "image"},

@@ -10,6 +10,7 @@ from voldetail import __version__
 from voldetail.cli.bake_command import bake
 from voldetail.cli.compare_command import compare
 from voldetail.cli.fit_command import fit
+from voldetail.cli.library_command import library_app
 from voldetail.cli.render_command import relight, render
 from voldetail.cli.retrieve_command import retrieve
 from voldetail.cli.show_command import schema, show
@@ -30,6 +31,7 @@ app = typer.Typer(
 for command in (fit, render, relight, bake, compare, stationarize, stationarity, retrieve, show, schema):
     app.command()(command)
 app.add_typer(texture_app)
+app.add_typer(library_app)
 
 
 def _version(wanted: bool) -> None:

@@ -120,6 +120,13 @@ def fit(
     evaluations: Annotated[
         int | None, typer.Option(help="The most pictures that are compared.", rich_help_panel=SEARCH)
     ] = None,
+    library: Annotated[
+        _Text,
+        typer.Option(
+            help="Reliefs to start from: auto (made once for the light's elevation, and kept), none, or a library's path.",
+            rich_help_panel=SEARCH,
+        ),
+    ] = None,
     time_limit: Annotated[
         float | None,
         typer.Option(help="The longest time for the search, in seconds.", rich_help_panel=SEARCH),
@@ -143,7 +150,7 @@ def fit(
         "--mask": mask, "--zone": zone, "--resolution": resolution, "--output": folder, "--domain": domain,
         "--amplitude": amplitude, "--specular": specular, "--solver": solver, "--metric": metric,
         "--mode": mode, "--look": look, "--colour": colour, "--stationarize": stationarize, "--seed": seed,
-        "--evaluations": evaluations, "--time-limit": time_limit,
+        "--evaluations": evaluations, "--library": library, "--time-limit": time_limit,
     }  # fmt: skip
     setup = read_setup(photo, options, override or [])
     place = FitFolder(output_folder(setup), setup)
@@ -153,12 +160,16 @@ def fit(
 
 def run(place: FitFolder, *, resume: bool, threads: int) -> None:
     """Fit the setup of ``place`` and fill it."""
+    from voldetail.cli.building import teller
     from voldetail.cli.progress import ProgressView
     from voldetail.fit.autolight import resolve_light
     from voldetail.fit.evenness import warning
     from voldetail.fit.fitter import fit as search
     from voldetail.fit.session import Progress, State
+    from voldetail.fit.starts import Start
     from voldetail.fit.target import Target, load_photo_of
+    from voldetail.scene.setup import Setup
+    from voldetail.start import starts_from
 
     console = remarks()
     picture = load_photo_of(place.setup)
@@ -179,6 +190,10 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
             if uneven:
                 console.print(uneven, markup=False, soft_wrap=True)
 
+        def starts_for(setup: Setup, target: Target) -> tuple[Start, ...]:
+            tell = teller(view, [], "reliefs for lights at this elevation, made once: ")
+            return starts_from(setup, target, on_progress=tell)
+
         def on_progress(progress: Progress) -> None:
             place.begin(keep=start is not None)
             place.preview(progress)
@@ -190,7 +205,7 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
 
         result = search(
             place.setup, photo=picture, start=start, light_guess=guess, on_progress=on_progress, on_state=on_state,
-            on_target=on_target,
+            on_target=on_target, starts_for=starts_for,
         )
         place.begin(keep=start is not None)  # a resumed fit that was complete reports no progress
         place.finish(result)

@@ -22,7 +22,7 @@ OUTPUT_ROOT = Path("voldetail-out")
 KEYS = {
     "--light": "light", "--mask": "mask", "--amplitude": "amplitude", "--resolution": "photo.resolution",
     "--solver": "fit.solver", "--metric": "fit.metric", "--seed": "seed", "--evaluations": "fit.evaluations",
-    "--time-limit": "fit.time_limit", "--domain": "domain", "--camera": "camera.kind",
+    "--library": "fit.library", "--time-limit": "fit.time_limit", "--domain": "domain", "--camera": "camera.kind",
     "--fov": "camera.field_of_view", "--specular": "fit.specular", "--output": "output",
     "--mode": "mode", "--look": "look", "--colour": "colour", "--stationarize": "photo.stationarize",
 }  # fmt: skip

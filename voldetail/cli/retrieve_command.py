@@ -89,20 +89,23 @@ def retrieve(
 
 
 def _groups(library: Path | None) -> Groups:
-    """The library's groups; without one, those of the default library."""
-    from voldetail.library import entries, table
-    from voldetail.library.groups import Group
+    """The library's groups; without one, those of the default library, built where the user's cache does not have it."""
+    from voldetail.cli.building import teller
+    from voldetail.cli.progress import ProgressView
+    from voldetail.library import StructureSource, open_library
+    from voldetail.library.cache import cached
     from voldetail.texture.structures import MODELS
 
     if library is not None:
-        raise InputError(f"The library {library} cannot be opened: libraries have no files yet; leave --library out.")
-    found = {}
-    with remarks().status("building the default library") as status:
-        for name, model in MODELS.items():
-            status.update(f"building the default library: {name}, {DEFAULT_ENTRIES} entries")
-            made = entries(model, 0, DEFAULT_ENTRIES)
-            found[name] = Group(name, tuple(p.key for p in model.parameters), made.values, table(made.vectors), made.seed)
-    return found
+        opened = open_library(library)
+        if not opened.groups:
+            raise InputError(f"The library {library} has reliefs, which fits start from (fit --library); give one of structures.")
+        return opened.groups
+    sources = [StructureSource(model) for model in MODELS.values()]
+    with ProgressView(remarks()) as view:
+        return cached(
+            sources, DEFAULT_ENTRIES, "structures", on_progress=teller(view, [], "the library of structures, made once: ")
+        ).groups
 
 
 def _chosen(groups: Groups, names: list[str] | None) -> Groups:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from voldetail.backend import mitsuba
-from voldetail.detail import bounds, rounded
+from voldetail.detail import rounded
 from voldetail.errors import InputError, VoldetailError
 from voldetail.fit.autolight import resolve_light
 from voldetail.fit.colour import ColourChoice, choose_colour
@@ -18,39 +18,27 @@ from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.objective import Evaluation, Objective
 from voldetail.fit.plans import Stage, default_plan, paper_plan
 from voldetail.fit.provenance import Findings, signed
-from voldetail.fit.ranges import MEDIUM_ROUGHNESS, ROUGHNESS, SOLID_ROUGHNESS
 from voldetail.fit.reflectance import colours
 from voldetail.fit.result import FitResult
 from voldetail.fit.session import Progress, Session, State, Stopped, derived_seed
-from voldetail.fit.space import Space
+from voldetail.fit.shown import space_of
+from voldetail.fit.starts import Start
 from voldetail.fit.target import Target, load_photo_of, make_target
 from voldetail.fit.told import Told, told_of_medium
 from voldetail.image import Photo
 from voldetail.metric import METRICS
 from voldetail.metric.anisotropy import anisotropy
-from voldetail.scene.build import build, edge_of
+from voldetail.scene.build import build
 from voldetail.scene.setup import SMALLEST_ZONE, Setup
-from voldetail.scene.view import view_of
-
-SMALLEST_CELL = 3.0
-"""Pixels a cell must span: smaller ones cannot be told from pixel noise."""
-
-LARGEST_CELL = 0.6
-"""Share of the zone that a cell may span: larger ones leave too few to have statistics."""
-
-DEEPEST = 0.12
-"""Share of the zone that a volume's relief may rise: what is deeper is seldom meant, and its grid takes minutes. Of clouds,
-0.07 and 0.09 were found with more allowed."""
-
-FINEST_OCTAVE = 1.6
-"""Pixels a cell of the finest octave must span, near the sampling limit of the mesh's one vertex a pixel."""
-
 
 COLOUR_SEEDS = 3
 """Noise seeds that judge the tries of a colour, and as many for the relief's shading."""
 
 INTERVAL_SEEDS = 2
 """Noise seeds for the intervals of numbers."""
+
+FEWEST_TOLD = 500
+"""Evaluations below which a library is not made for a fit: that takes longer than the fit."""
 
 FINALISTS = 3
 DETAIL_SEEDS = 4
@@ -62,13 +50,15 @@ def fit(
     on_progress: Callable[[Progress], None] = lambda progress: None,
     on_state: Callable[[State], None] = lambda state: None,
     on_target: Callable[[Target], None] = lambda target: None,
+    starts_for: Callable[[Setup, Target], Sequence[Start]] = lambda setup, target: (),
 ) -> FitResult:
     """Return the Detail whose rendering has the texture statistics of the photo (GD10 section 7).
 
     ``start`` continues an interrupted fit from one of the states handed to ``on_state``. Ctrl-C ends the search with
     the best so far. A light "auto" is estimated first; ``light_guess`` tells that the setup's light was estimated so
-    already, for the record. ``on_target`` gets what will be compared, before the search. Raises InputError for
-    input that cannot be used.
+    already, for the record. ``on_target`` gets what will be compared, before the search. ``starts_for`` may tell where to
+    start instead of covering the space, and the search is then shorter; it is asked for surfaces under the default solver and
+    metric only. Raises InputError for input that cannot be used.
     """
     if setup.fit.metric not in METRICS:
         raise InputError(f"There is no metric {setup.fit.metric!r}: choose one of {', '.join(METRICS)}.")
@@ -78,7 +68,8 @@ def fit(
     light_guess = found or light_guess
     target = make_target(setup, photo)
     on_target(target)
-    session, stages = _session(setup, target, start, on_progress, on_state)
+    starts = starts_for(setup, target) if (takes_starts(setup) if start is None else start.started) else ()
+    session, stages = _session(setup, target, start, starts, on_progress, on_state)
     status, interrupted = "the plan was carried out", False
     try:
         while session.stage < len(stages):
@@ -113,39 +104,24 @@ def fit(
     )
 
 
-def space_of(setup: Setup, target: Target) -> Space:
-    """Return the space of details that the zone of ``target`` can show.
-
-    Raises InputError for a zone so small a part of its photo that no detail is fine enough.
-    """
-    view = view_of(setup.camera, target.shape, target.zone, setup.photo.resolution)
-    lowest, highest = bounds("noise.scale")
-    # What shows no finer than a pixel, or than a cell of the grid that a volume is baked to.
-    cell = edge_of(setup, view) if setup.mode == "volume" else 0.0
-    grain = max(view.pixel, cell)
-    shown = max(view.rows, view.columns) * view.pixel
-    coarsest = max(1.0 / (LARGEST_CELL * shown), lowest)
-    finest = min(1.0 / (SMALLEST_CELL * grain), highest)
-    if not coarsest < finest:
-        raise InputError(
-            f"The zone of {target.zone[2]} x {target.zone[3]} pixels is too small a part of its photo of"
-            f" {target.shape[1]} x {target.shape[0]}: crop the photo, or use a larger --zone."
-        )
-    return Space(
-        domain=setup.domain, scale=(coarsest, finest), finest=1.0 / (FINEST_OCTAVE * grain),
-        amplitude=setup.amplitude, plain=setup.fit.solver == "paper", mode=setup.mode, medium=setup.medium,
-        roughness=MEDIUM_ROUGHNESS if setup.medium else SOLID_ROUGHNESS if setup.mode == "volume" else ROUGHNESS,
-        highest=min(bounds("relief.amplitude")[1], shown * DEEPEST if setup.mode == "volume" else math.inf), cell=cell,
-    )
+def takes_starts(setup: Setup) -> bool:
+    """Whether a fit of ``setup`` is told where to start: the default one of a relief, unless it is to be a short one."""
+    settings = setup.fit
+    usual = setup.mode == "displacement" and settings.solver == "default" and settings.metric == "combined"
+    short = settings.library == "auto" and settings.evaluations is not None and settings.evaluations < FEWEST_TOLD
+    return usual and not short and settings.library != "none"
 
 
 def _session(
-    setup: Setup, target: Target, start: State | None,
+    setup: Setup, target: Target, start: State | None, starts: Sequence[Start],
     on_progress: Callable[[Progress], None], on_state: Callable[[State], None],
 ) -> tuple[Session, tuple[Stage, ...]]:
-    planner = paper_plan if setup.fit.solver == "paper" else default_plan
     space = space_of(setup, target)
-    plan = planner(space, anisotropy(target.luminance, target.mask), setup.fit.evaluations)
+    stretched = anisotropy(target.luminance, target.mask)
+    if setup.fit.solver == "paper":
+        plan = paper_plan(space, stretched, setup.fit.evaluations)
+    else:
+        plan = default_plan(space, stretched, setup.fit.evaluations, starts)
     coarse = _coarse(setup, target)
     both = setup.fit.solver != "paper" and coarse.target is not target
     fine = Objective(
@@ -156,7 +132,7 @@ def _session(
     planned = setup.fit.evaluations or plan.evaluations
     session = Session(
         coarse, fine, space, setup.seed, planned, setup.fit.seeds, setup.fit.time_limit,
-        on_progress, on_state, start, stages=len(plan.stages),
+        on_progress, on_state, start, stages=len(plan.stages), started=bool(starts),
     )
     return session, plan.stages
 

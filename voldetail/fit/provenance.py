@@ -51,6 +51,8 @@ def signed(
         settings["medium_intervals"] = {t.key: [float(f"{v:.3g}") for v in (t.low, t.high)] for t in found.told}
     if target.unevenness is not None:
         settings["unevenness"] = float(f"{target.unevenness:.3g}")
+    if session.started:
+        settings["library"] = setup.fit.library
     if setup.photo.stationarize:
         settings["stationarized"] = True
     if found.colour is not None:

@@ -45,7 +45,8 @@ class Progress:
 class State:
     """All that is needed to go on after an interruption; plain numbers, saved as JSON by the command line.
 
-    stage: index of the stage of the plan that was running; pool: the candidates it started from, bettered since.
+    stage: index of the stage of the plan that was running; pool: the candidates it started from, bettered since. started:
+    whether it is the plan of a fit that was told where to start.
     """
 
     stage: int
@@ -53,6 +54,7 @@ class State:
     evaluations: int
     seconds: float
     trace: tuple[tuple[int, float], ...] = ()
+    started: bool = False
 
 
 def derived_seed(root: int, name: str) -> int:
@@ -84,6 +86,7 @@ class Session:
     best_value: float = np.inf
     stage: int = 0
     stages: int = 0
+    started: bool = False
     pool: list[Candidate] = field(default_factory=list)
     trace: list[tuple[int, float]] = field(default_factory=list)
 
@@ -160,7 +163,7 @@ class Session:
 
     def save(self) -> None:
         """Hand out the state, for a later resume."""
-        self.on_state(State(self.stage, tuple(self.pool), self.evaluations, self.seconds, tuple(self.trace)))
+        self.on_state(State(self.stage, tuple(self.pool), self.evaluations, self.seconds, tuple(self.trace), self.started))
 
     def refine(
         self, candidate: Candidate, objective: Objective, budget: int, solver: Solver | None = None,

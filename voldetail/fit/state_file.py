@@ -82,6 +82,7 @@ class _StateRecord(Record):
     seconds: Annotated[float, Field(ge=0)]
     pool: Annotated[tuple[_CandidateRecord, ...], Field(max_length=MOST_CANDIDATES)]
     trace: tuple[tuple[_Count, float], ...]
+    started: bool = False
 
 
 def save_state(path: Path, state: State, setup: Setup, photo_sha256: str) -> None:
@@ -109,6 +110,7 @@ def save_state(path: Path, state: State, setup: Setup, photo_sha256: str) -> Non
         "seconds": float(state.seconds),
         "pool": pool,
         "trace": [[int(count), float(best)] for count, best in state.trace],
+        "started": state.started,
     }
     # Python writes each float with the digits that bring back the same bits.
     write_text(path, json.dumps(data, allow_nan=False) + "\n")
@@ -139,7 +141,7 @@ def load_state(path: Path, setup: Setup, photo_sha256: str) -> State:
     _refuse_other(record.belongs, setup, photo_sha256, where)
     pool = tuple(_candidate(c, setup, where) for c in record.pool)
     trace = tuple((count, best) for count, best in record.trace)
-    return State(record.stage, pool, record.evaluations, record.seconds, trace)
+    return State(record.stage, pool, record.evaluations, record.seconds, trace, record.started)
 
 
 def _belongs(setup: Setup, photo_sha256: str) -> dict[str, Any]:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from voldetail.library.pieces import Rows
 from voldetail.library.tables import Table
 
 
@@ -20,7 +22,7 @@ class Group:
 
     model: str
     keys: tuple[str, ...]
-    values: NDArray[np.float64]
+    values: NDArray[np.float64] | Rows[np.float64]
     table: Table
     seed: int
 
@@ -30,3 +32,18 @@ class Group:
 
 
 Groups = Mapping[str, Group]
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """Reliefs under one light: its name, the names of their numbers, values (N, numbers), rows (N, L) of `metric.rows`.
+
+    seed: of all that is random in them. definition: what else decides them, as their source says.
+    """
+
+    name: str
+    keys: tuple[str, ...]
+    values: NDArray[np.float64] | Rows[np.float64]
+    rows: NDArray[np.float16] | Rows[np.float16]
+    seed: int
+    definition: Mapping[str, Any]

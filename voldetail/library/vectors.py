@@ -12,12 +12,17 @@ have the integral 0, and magnitudes know no sign. So neither has to be stored, n
 
 from __future__ import annotations
 
+import hashlib
+import json
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from voldetail.errors import InputError
 from voldetail.metric import gabor
 from voldetail.metric.layers import Layers
+from voldetail.metric.sensitivity import PIXELS_A_DEGREE
 
 Array = NDArray[np.float32]
 
@@ -36,6 +41,33 @@ MEANS = np.r_[0, ISOTROPIC : ISOTROPIC + gabor.SCALES]
 SMALLEST_SIDE = 32
 """Pixels of a structure map; under 101 the coarsest scales' windows do not fit and their entries are NaN, which comparing
 leaves out."""
+
+COMPLETE_SIDE = 103
+"""Pixels of a structure map from which on every scale's windows fit."""
+
+VECTORS_VERSION = 1
+"""Counts changes of a vector's numbers that no constant in `definition` tells."""
+
+
+def definition() -> dict[str, Any]:
+    """Return all that decides the vector of a picture, as JSON has it: what stored vectors were measured with."""
+    return {
+        "version": VECTORS_VERSION, "length": LENGTH, "orientations": ORIENTATIONS,
+        "windows": [round(sigma, 9) for sigma in gabor.SIGMAS],
+        "cycles": [list(gabor.cycles(scale)) for scale in range(gabor.SCALES)], "reach": gabor.REACH, "passed": gabor.PASSED,
+        "fewest_samples": gabor.FEWEST_SAMPLES,
+    }  # fmt: skip
+
+
+def weights_definition(w_global: float = gabor.GLOBAL) -> dict[str, Any]:
+    """Return all that decides `weights`, as JSON has it."""
+    return {"w_global": w_global, "contrast_sensitivity": "Mannos & Sakrison 1974", "pixels_a_degree": PIXELS_A_DEGREE}
+
+
+def digest(definition: object) -> str:
+    """Return the SHA-256 of a definition's JSON, 64 hexadecimal digits, whatever the order of its names."""
+    text = json.dumps(definition, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
 
 def vector_of(structure: ArrayLike, mask: ArrayLike | None = None) -> Array:

@@ -53,7 +53,12 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
 
 def compare(a: Array, b: Array, basis: Array | None, /) -> float:
     """Root mean square difference of the correlations."""
-    return float(np.sqrt(np.mean((a - b) ** 2)))
+    return float(apart(a, b, basis))
+
+
+def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
+    """The same for any number of ``b`` (..., n) at once."""
+    return np.asarray(np.sqrt(np.mean((a - b) ** 2, axis=-1)))
 
 
 def _standardised(layers: Layers, level: int) -> tuple[Array, Allowed]:

@@ -52,7 +52,12 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
 
 def compare(a: Array, b: Array, basis: Array | None, /) -> float:
     """Hellinger distance, 0 to 1."""
-    return float(np.sqrt(np.sum((np.sqrt(a) - np.sqrt(b)) ** 2) / 2))
+    return float(apart(a, b, basis))
+
+
+def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
+    """The same for any number of ``b`` (..., 59) at once."""
+    return np.asarray(np.sqrt(np.sum((np.sqrt(a) - np.sqrt(b)) ** 2, axis=-1) / 2))
 
 
 def _patterns(image: Array, radius: int) -> NDArray[np.uint8]:

@@ -32,5 +32,10 @@ def spread(functions: Array) -> Array:
 
 def wasserstein(a: Array, b: Array, unit: Array | None) -> float:
     """Mean of the 1-Wasserstein distances of K distributions (K, 32), each in its unit (K, 1) (None: 1)."""
+    return float(apart(a, b, unit))
+
+
+def apart(a: Array, b: Array, unit: Array | None) -> Array:
+    """The same for any number of ``b`` (..., K, 32) at once."""
     gap = np.abs(a - b)
-    return float(np.mean(gap if unit is None else gap / unit))
+    return np.asarray(np.mean(gap if unit is None else gap / unit, axis=(-2, -1)))

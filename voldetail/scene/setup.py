@@ -186,6 +186,12 @@ class FitSettings(Record):
         default=2, ge=1, le=16, description="Noise seeds compared at once, so that none is overfitted."
     )
     specular: bool = Field(default=True, description="Whether the surface may have a highlight.")
+    library: str = Field(
+        default="auto",
+        min_length=1,
+        max_length=4096,
+        description="Reliefs to start from: auto (built once and kept), none, or a library's path.",
+    )
 
 
 class Setup(Record):
