@@ -97,6 +97,26 @@ def test_a_zone_a_mask_and_a_scale(photo: Path, tmp_path: Path, capsys: pytest.C
     assert found["scales_missing"] > 0
 
 
+def test_a_library_s_file_and_the_default_library_are_searched(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(known, "PICTURES", 1)
+    monkeypatch.setattr(retrieve_command, "DEFAULT_ENTRIES", 1)
+    monkeypatch.setenv("VOLDETAIL_CACHE", str(tmp_path / "cache"))
+    save_png(tmp_path / "photo.png", recolour(structure(MODELS["star"], {"tips": 5}, 128), DARK, BRIGHT))
+    library, answers = tmp_path / "stars.vlib", tmp_path / "answers.json"
+    assert main(["library", "build", "star", "--entries", "3", "--workers", "1", "-o", str(library)]) == 0
+    assert main(["retrieve", str(tmp_path / "photo.png"), "--library", str(library), "--json", str(answers)]) == 0
+    assert list(json.loads(answers.read_text())["best_of_each"]) == ["star"]
+    for _ in range(2):
+        assert main(["retrieve", str(tmp_path / "photo.png"), "--json", str(answers)]) == 0
+        assert list(json.loads(answers.read_text())["best_of_each"]) == list(MODELS)
+    assert len(list((tmp_path / "cache").iterdir())) == 1
+    capsys.readouterr()
+    assert main(["retrieve", str(tmp_path / "photo.png"), "--library", str(tmp_path)]) == 2
+    assert "is no library" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [

@@ -112,7 +112,8 @@ def _chosen(groups: Groups, names: list[str] | None) -> Groups:
     """The groups that are named; all where none is."""
     from voldetail.detail.parameters import nearest
 
-    for name in names or []:
+    names = [name.replace("-", " ") for name in names or []]  # as library build takes the name "cellular grid"
+    for name in names:
         if name not in groups:
             raise InputError(f"The library has no model {name[:60]!r}; {nearest(name, list(groups))}.")
     return {name: group for name, group in groups.items() if not names or name in names}

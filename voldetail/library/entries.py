@@ -23,9 +23,9 @@ Sampling = Literal["random", "grid"]
 SIDE = 256
 """Pixels of an entry's picture, the paper's."""
 
-ENTRIES_VERSION = 1
-"""Counts changes of what an entry is: of the draws here and of the models' pictures. A stored library of another version has
-other entries under the same numbers."""
+ENTRIES_VERSION = 2
+"""Counts changes of what an entry is: of the draws here, and of the models' pictures and their span. A stored library of another
+version has other entries under the same numbers."""
 
 
 @dataclass(frozen=True, eq=False)

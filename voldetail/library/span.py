@@ -18,7 +18,7 @@ Span = tuple[float, float]
 
 TRIM = 0.005
 """Share of pixels, at either end, that may lie beyond the tones. The paper takes a photo's extreme pixels; a speck then leaves
-the rest a contrast that no entry has, and sand becomes streaks. Tuned on 34 photographs, see results/retrieval."""
+the rest a contrast that no entry has, and sand becomes streaks. Tuned on 33 photographs, see results/retrieval."""
 
 
 def span_of(structure: ArrayLike, trim: float = TRIM) -> Span:
