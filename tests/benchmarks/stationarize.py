@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.benchmarks.stationarize_photos import Photograph, pixels, there
+from tests.benchmarks.stationarize_photos import ONLY_SHOWN, Photograph, pixels, there
 from tests.benchmarks.stationarize_sheets import sheet
 from tests.benchmarks.stationarize_summary import summarise
 from voldetail.files import write_text
@@ -93,10 +93,14 @@ def main() -> None:
     records = options.output / "records"
     records.mkdir(parents=True, exist_ok=True)
     chosen = [p for p in there(options.size) if not options.only or p.name in options.only]
+    # What is drawn only keeps its numbers apart: the figures are of the same photographs whatever is shown.
+    drawn = [p for p in ONLY_SHOWN if p.name in options.only]
+    (records / "drawn").mkdir(exist_ok=True)
     if options.photos and options.photos < len(chosen):
         chosen = [chosen[i] for i in np.linspace(0, len(chosen) - 1, options.photos).round().astype(int)]
-    for photograph in [] if options.summary_only else chosen:
-        record = measured(photograph, records / f"{photograph.name}.json", options.seeds, options.size)
+    for photograph in [] if options.summary_only else [*chosen, *drawn]:
+        folder = records / "drawn" if options.only else records
+        record = measured(photograph, folder / f"{photograph.name}.json", options.seeds, options.size)
         if options.sheets and photograph.credit:
             picture, seed = pixels(photograph), best_seed(record)
             tiles = {way: make(picture, way, seed, options.size).tile for way in WAYS}

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import skimage
 from numpy.typing import NDArray
 
 from tests.benchmarks.relit import SHARED
@@ -64,6 +65,15 @@ MEASURED = (
 """The licence of these does not let them be shown; the five ns_* sets are copies from the last collection."""
 
 PHOTOGRAPHS = SHOWN + MEASURED
+
+SHIPPED = Path(skimage.__file__).parent / "data"
+ONLY_SHOWN = (
+    Photograph("clouds", "photos/clouds_kloofendal/clouds.png", POLY),
+    Photograph("hubble", str(SHIPPED / "hubble_deep_field.jpg"), "public domain, NASA and ESA", "single bright galaxies"),
+    Photograph("coins", str(SHIPPED / "coins.png"), "no known copyright, Brooklyn Museum", "things, and few of them"),
+    Photograph("tissue", str(SHIPPED / "ihc.png"), "CC0, Human Protein Atlas and scikit-image"),
+)
+"""More that may be shown, drawn where they are named; the figures' numbers are of PHOTOGRAPHS alone."""
 
 
 def there(size: int) -> list[Photograph]:

@@ -107,7 +107,14 @@ def test_a_library_s_file_and_the_default_library_are_searched(
     library, answers = tmp_path / "stars.vlib", tmp_path / "answers.json"
     assert main(["library", "build", "star", "--entries", "3", "--workers", "1", "-o", str(library)]) == 0
     assert main(["retrieve", str(tmp_path / "photo.png"), "--library", str(library), "--json", str(answers)]) == 0
-    assert list(json.loads(answers.read_text())["best_of_each"]) == ["star"]
+    exact = json.loads(answers.read_text())
+    assert list(exact["best_of_each"]) == ["star"]
+    words = ["retrieve", str(tmp_path / "photo.png"), "--library", str(library), "--index", "--json", str(answers)]
+    assert main(words) == 2
+    assert "has no index" in capsys.readouterr().err
+    assert main(["library", "index", str(library)]) == 0
+    assert main(words) == 0
+    assert json.loads(answers.read_text()) == exact
     for _ in range(2):
         assert main(["retrieve", str(tmp_path / "photo.png"), "--json", str(answers)]) == 0
         assert list(json.loads(answers.read_text())["best_of_each"]) == list(MODELS)
@@ -128,6 +135,7 @@ def test_a_library_s_file_and_the_default_library_are_searched(
         (["-o", "sheet.jpg"], "ends in .png"),
         (["--json", "missing/answers.json"], "no folder"),
         (["--top", "0"], "--top"),
+        (["--index"], "without a library"),
     ],
 )
 def test_errors_are_sentences(

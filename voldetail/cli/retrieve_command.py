@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from voldetail.library import Answer, Familiarity, Query, Ranking
     from voldetail.library.groups import Groups
+    from voldetail.library.index import Index
 
 MOST_ANSWERS = 100
 DEFAULT_ENTRIES = 400
@@ -45,6 +46,9 @@ def retrieve(
         ),
     ] = None,
     rotation: Annotated[bool, typer.Option("--rotation/--no-rotation", help="Whether structures may be turned.")] = True,
+    indexed: Annotated[
+        bool, typer.Option("--index", help="Use the library's index: quicker among millions, and may miss an answer.")
+    ] = False,
     swap: Annotated[bool, typer.Option("--swap/--no-swap", help="Whether the two tones may change places.")] = True,
     sheet: Annotated[Path | None, typer.Option("--output", "-o", help="A sheet of the photo and the answers, .png.")] = None,
     as_json: Annotated[Path | None, typer.Option("--json", help="The answers as JSON.")] = None,
@@ -67,7 +71,8 @@ def retrieve(
     asked = _query(photo, mask, zone, scale)
     groups = _chosen(_groups(library), model)
     found = rank(
-        groups, asked.vector, top, tones=(asked.tones.dark, asked.tones.bright), rotations=rotation, swap=swap
+        groups, asked.vector, top, tones=(asked.tones.dark, asked.tones.bright), rotations=rotation, swap=swap,
+        indexes=_indexes(library) if indexed else None,
     )  # fmt: skip
     first = found.answers[0]
     with remarks().status(f"comparing with other pictures of {first.model}"):
@@ -106,6 +111,15 @@ def _groups(library: Path | None) -> Groups:
         return cached(
             sources, DEFAULT_ENTRIES, "structures", on_progress=teller(view, [], "the library of structures, made once: ")
         ).groups
+
+
+def _indexes(library: Path | None) -> dict[str, Index]:
+    from voldetail.library import open_library
+    from voldetail.library.index import open_index
+
+    if library is None:
+        raise InputError("--index was given without a library; name one by --library, with an index that library index made.")
+    return open_index(open_library(library))
 
 
 def _chosen(groups: Groups, names: list[str] | None) -> Groups:

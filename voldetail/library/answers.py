@@ -13,6 +13,7 @@ from voldetail.errors import InputError
 from voldetail.library.compare import nearest
 from voldetail.library.entries import SIDE
 from voldetail.library.groups import Group, Groups
+from voldetail.library.index import Index, nearest_by_index
 from voldetail.library.span import Span, span_of, spanned
 from voldetail.library.two_tone import recolour
 from voldetail.texture.structures import MODELS, structure
@@ -54,18 +55,21 @@ class Ranking:
 
 def rank(
     groups: Groups, vector: ArrayLike, top: int = 8, *, tones: tuple[ArrayLike, ArrayLike] | None = None,
-    rotations: bool = True, swap: bool = True,
+    rotations: bool = True, swap: bool = True, indexes: Mapping[str, Index] | None = None,
 ) -> Ranking:
     """Return the ``top`` entries nearest to the descriptor ``vector`` (750,) in each of ``groups`` and in all of them.
 
     Models are compared by D itself. tones: of the photo, the darker first, sRGB-encoded; by default black and white.
-    rotations, swap: False compares structures as they lie, and tones in their order. Entries of equal distance are in the
-    order of the groups. Raises InputError for no group and what `compare.nearest` refuses.
+    rotations, swap: False compares structures as they lie, and tones in their order. indexes: of some groups, see `index`, which
+    are then not compared whole; an entry or two may be missed. Entries of equal distance are in the order of the groups. Raises InputError for no group and what `compare.nearest` refuses.
     """
     if not groups:
         raise InputError("There is no model to look in; name one, or build a library with one.")
     dark, bright = (BLACK, WHITE) if tones is None else (_tone(tones[0]), _tone(tones[1]))
-    found = {name: _answers(group, vector, top, dark, bright, rotations, swap) for name, group in groups.items()}
+    found = {
+        name: _answers(group, vector, top, (dark, bright), rotations, swap, (indexes or {}).get(name))
+        for name, group in groups.items()
+    }
     every = sorted((a for answers in found.values() for a in answers), key=lambda answer: answer.distance)
     return Ranking(tuple(every[:top]), found)
 
@@ -107,15 +111,20 @@ def texture_of(answer: Answer, size: tuple[int, int] = (SIDE, SIDE), photo: str 
 
 
 def _answers(
-    group: Group, vector: ArrayLike, top: int, dark: Tone, bright: Tone, rotations: bool, swap: bool
+    group: Group, vector: ArrayLike, top: int, tones: tuple[Tone, Tone], rotations: bool, swap: bool, index: Index | None
 ) -> tuple[Answer, ...]:
-    count = min(top, len(group.values))
+    (dark, bright), count = tones, min(top, len(group.values))
+    asked_for = max(count, min(top, 1))
+    if index is None:
+        matches = nearest(group.table, vector, asked_for, rotations=rotations, swap=swap)
+    else:
+        matches = nearest_by_index(group, index, vector, asked_for, rotations=rotations, swap=swap)
     return tuple(
         Answer(
             group.model, match.entry, group.seed, group.parameters(match.entry), match.rotation, match.swapped, match.distance,
             *((bright, dark) if match.swapped else (dark, bright)),
         )
-        for match in nearest(group.table, vector, max(count, min(top, 1)), rotations=rotations, swap=swap)
+        for match in matches
     )  # fmt: skip
 
 
