@@ -68,9 +68,10 @@ def summary(records: dict[str, dict[str, Any]]) -> dict[str, Any]:
         ratios.append(until(alone["curve"], same) / until(told["curve"], same))
         nearer.append(told["M"] / alone["M"])
         for how, numbers in seconds.items():
-            numbers.append(record[how]["seconds"])
+            numbers.append(round(record[how]["seconds"] - record[how]["library"], 1))
     return {
-        "photographs": len(records), "seconds, median": {how: median(numbers) for how, numbers in seconds.items()},
+        "photographs": len(records),
+        "seconds but for the library's, median": {how: median(numbers) for how, numbers in seconds.items()},
         "M with over M without, median": round(median(nearer), 3), "nearer with": sum(ratio < 1 for ratio in nearer),
         "time to the same distance without over with, median": round(median(ratios), 2),
         "of each": {name: round(ratio, 2) for name, ratio in zip(records, ratios, strict=True)},

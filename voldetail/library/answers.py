@@ -61,7 +61,8 @@ def rank(
 
     Models are compared by D itself. tones: of the photo, the darker first, sRGB-encoded; by default black and white.
     rotations, swap: False compares structures as they lie, and tones in their order. indexes: of some groups, see `index`, which
-    are then not compared whole; an entry or two may be missed. Entries of equal distance are in the order of the groups. Raises InputError for no group and what `compare.nearest` refuses.
+    are then not compared whole; an entry or two may be missed. Entries of equal distance are in the order of the groups.
+    Raises InputError for no group and what `compare.nearest` refuses.
     """
     if not groups:
         raise InputError("There is no model to look in; name one, or build a library with one.")
