@@ -134,7 +134,8 @@ def test_what_leaves_a_thick_slab_is_near_what_is_traced() -> None:
     """Front and back of optical thickness 10, albedo 0.99, even scattering: 0.57 and 0.10 of a white surface."""
     grid, medium = slab(HEIGHTS["even"][0]), Medium(20.0, 0.0, 0.99)
     for lamp in (OBLIQUE, Lamp(direction=(0.0, 0.0, -1.0))):
-        wanted = float(traced_picture(TracedVolume(grid, medium, MIDDLE, lamp, scatterings=512), 512, 0.0).mean())
+        # With 512 samples the back strays by 3 %, another way on another processor.
+        wanted = float(traced_picture(TracedVolume(grid, medium, MIDDLE, lamp, scatterings=512), 4096, 0.0).mean())
         assert float(marched(grid, medium, lamp, MIDDLE).diffuse.mean()) == pytest.approx(wanted, rel=0.15)
 
 
