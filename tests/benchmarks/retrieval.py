@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.library import entries, nearest, published_w_global, random_values, table, vector_of
+from voldetail.library.span import span_of, spanned
 from voldetail.metric.gabor import GLOBAL
 from voldetail.texture.structures import MODELS, structure
 
@@ -36,6 +37,7 @@ def queries(count: int) -> list[tuple[int, int, bool, Array]]:
     for k in range(0, len(NAMES) * count, max(count // QUERIES, 1)):
         model, step, swap = MODELS[NAMES[k // count]], int(rng.integers(16)), bool(rng.integers(2))
         s = structure(model, random_values(model, k % count), rotation=step * np.pi / 16, seed=1)
+        s = spanned(s, span_of(s))  # as a photo's structure is
         found.append((k, step, swap, vector_of(1 - s if swap else s)))
     return found
 

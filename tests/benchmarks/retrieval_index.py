@@ -22,6 +22,7 @@ from voldetail.library.build import build
 from voldetail.library.index import nearest_by_index, open_index, write_index
 from voldetail.library.measures import MeasureName
 from voldetail.library.source import Chunk
+from voldetail.library.span import span_of, spanned
 from voldetail.texture.structures import MODELS, structure
 
 EACH = 60
@@ -53,6 +54,7 @@ def queries() -> list[Array]:
         for k in range(QUERIES):
             values = random_values(MODELS[name], k, seed=1)
             s = structure(MODELS[name], values, rotation=float(rng.integers(16)) * np.pi / 16, seed=3)
+            s = spanned(s, span_of(s))
             found.append(vector_of(1 - s if rng.integers(2) else s))
     return found
 
