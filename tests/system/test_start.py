@@ -94,6 +94,27 @@ def test_the_relief_in_a_photo_is_found_under_light_from_any_side(reliefs: Libra
     assert sum(angles) >= len(angles) - 1
 
 
+def test_reliefs_are_the_same_bytes_in_whatever_chunks(reliefs: Library, tmp_path: Path) -> None:
+    again = open_library(build_library([ReliefSource(50), ReliefSource(20)], [LOOKS, 8], tmp_path / "lib", chunk=7))
+    assert again.header.sha256 == reliefs.header.sha256
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["relief-45"], "There are no reliefs 'relief-45'"),
+        (["relief", "brick"], "either structures or reliefs"),
+        (["brick", "relief-50"], "either structures or reliefs"),
+    ],
+)
+def test_reliefs_that_there_are_none_of(
+    words: list[str], sentence: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["library", "build", *words, "--entries", "8", "-o", str(tmp_path / "lib")]) == 2
+    assert sentence in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_near_light_is_taken_for_a_distant_one_at_the_zones_middle() -> None:
     setup = wanted("point:1,0,1")
     view = view_of(setup.camera, (FINE, FINE), (0, 0, FINE, FINE), FINE)

@@ -31,6 +31,7 @@ library_app = typer.Typer(
 
 @library_app.command()
 def build(
+    context: typer.Context,
     what: Annotated[
         list[str],
         typer.Argument(metavar="WHAT...", help="Names of structure models, or all; or relief, for fits to start from."),
@@ -70,6 +71,10 @@ def build(
     kind = "series of reliefs" if plan.measure == "reliefs" else "models" if len(sources) > 1 else "model"
     of = f"{plan.entries} entries of {len(sources)} {kind}"
     remarks().print(f"{of}, {size_on_disk(plan.bytes)} on disk and twice that while building.", markup=False, soft_wrap=True)
+    if plan.measure == "reliefs":
+        from voldetail.cli.threads import use_threads
+
+        use_threads(context.obj)
     last: list[BuildProgress] = []
     with ProgressView(remarks()) as view:
         tell = teller(view, last)

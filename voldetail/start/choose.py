@@ -79,6 +79,8 @@ def elevations_of(names: Sequence[str]) -> list[int]:
     known = {f"relief-{at}": at for at in ELEVATIONS}
     found: list[int] = []
     for name in names:
+        if not name.startswith("relief"):
+            raise InputError(f"A library has either structures or reliefs; build one for {name[:60]!r} apart.")
         if name != "relief" and name not in known:
             raise InputError(f"There are no reliefs {name[:60]!r}; relief (all) and {', '.join(known)} are known.")
         found += list(ELEVATIONS) if name == "relief" else [known[name]]
