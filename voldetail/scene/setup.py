@@ -170,9 +170,7 @@ class FitSettings(Record):
     )
     metric: str = Field(default="combined", min_length=1, description="The distance that is minimised.")
     evaluations: int | None = Field(
-        default=None,
-        ge=1,
-        le=1_000_000,
+        default=None, ge=1, le=1_000_000,
         description="The most pictures that are rendered; null: the solver's own number.",
     )
     time_limit: float | None = Field(
@@ -187,11 +185,9 @@ class FitSettings(Record):
     )
     specular: bool = Field(default=True, description="Whether the surface may have a highlight.")
     library: str = Field(
-        default="auto",
-        min_length=1,
-        max_length=4096,
+        default="auto", min_length=1, max_length=4096,
         description="Reliefs to start from: auto (built once and kept), none, or a library's path.",
-    )
+    )  # fmt: skip
 
 
 class Setup(Record):
