@@ -153,6 +153,18 @@ def test_what_is_no_library_of_reliefs_is_refused(reliefs: Library, tmp_path: Pa
         starts_from(wanted("0,50", str(reliefs.header.path)), target)
 
 
+def test_a_cache_that_cannot_be_written_is_told_and_does_without(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "cache").write_text("no folder")
+    monkeypatch.setenv("VOLDETAIL_CACHE", str(tmp_path / "cache"))
+    setup = wanted("0,50", "auto")
+    said: list[str] = []
+    target = make_target(setup, photo_of(turned(4, 0.0, False), "0,50"))
+    assert starts_from(setup, target, on_remark=said.append) == ()
+    assert len(said) == 1
+    assert "Searching without a library" in said[0]
+    assert "VOLDETAIL_CACHE" in said[0]
+
+
 def test_which_fits_are_told_where_to_start() -> None:
     assert takes_starts(wanted("0,50", "auto"))
     assert takes_starts(wanted("0,50", "mine.vlib", evaluations=20))

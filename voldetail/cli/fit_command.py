@@ -86,12 +86,7 @@ def fit(
     ] = None,
     folder: Annotated[
         _Text,
-        typer.Option(
-            "--output",
-            "-o",
-            help="The folder for results; default voldetail-out/PHOTO.",
-            rich_help_panel=WHERE,
-        ),
+        typer.Option("--output", "-o", help="The folder for results; default voldetail-out/PHOTO.", rich_help_panel=WHERE),
     ] = None,
     force: Annotated[
         bool, typer.Option("--force", help="Replace an earlier fit.", rich_help_panel=WHERE)
@@ -192,7 +187,9 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
 
         def starts_for(setup: Setup, target: Target) -> tuple[Start, ...]:
             tell = teller(view, [], "reliefs for lights at this elevation, made once: ")
-            return starts_from(setup, target, on_progress=tell)
+            return starts_from(
+                setup, target, on_progress=tell, on_remark=lambda said: console.print(said, markup=False, soft_wrap=True)
+            )
 
         def on_progress(progress: Progress) -> None:
             place.begin(keep=start is not None)

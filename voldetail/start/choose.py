@@ -25,13 +25,14 @@ fit's own comparison 0.1 on 14 photographs), and comparing one takes 10 ms."""
 
 
 def starts_from(
-    setup: Setup, target: Target, *, on_progress: Callable[[BuildProgress], None] = lambda progress: None
+    setup: Setup, target: Target, *, on_progress: Callable[[BuildProgress], None] = lambda progress: None,
+    on_remark: Callable[[str], None] = lambda sentence: None,
 ) -> tuple[Start, ...]:
     """Return where a fit of ``setup`` may start: the reliefs of its library nearest to the photo under its light.
 
     setup.fit.library: "auto", which is made in the user's cache where it is not there, for the light's elevation alone; "none";
-    or the path of one. No starts where the mask leaves too little of the zone at the library's size. Raises InputError for a
-    library that cannot be used or made.
+    or the path of one. No starts where the mask leaves too little of the zone at the library's size, and where the cache cannot
+    be written, which ``on_remark`` is told. Raises InputError for a library by its path that cannot be used.
     """
     named = setup.fit.library
     if named == "none":
@@ -41,8 +42,12 @@ def starts_from(
     if named == "auto":
         nearest = min(ELEVATIONS, key=lambda at: abs(at - elevation))
         source = ReliefSource(nearest)
-        library = cached([source], ENTRIES, f"reliefs-{nearest}", on_progress=on_progress)
-        series = library.series[source.name]
+        try:
+            series = cached([source], ENTRIES, f"reliefs-{nearest}", on_progress=on_progress).series[source.name]
+        except InputError as refused:
+            # The user asked for a fit and not for a library: a home that is read only is no reason to have none.
+            on_remark(f"Searching without a library of reliefs, which takes longer: {refused}")
+            return ()
     else:
         series = _nearest_series(open_library(Path(named)), elevation)
     try:
