@@ -3,7 +3,7 @@
     python -m tests.benchmarks.retrieval_models [FOLDER [ENTRIES [PLAIN [DISTURBED]]]]
 
 A library of ENTRIES (400) random entries of each of the 12 models; PLAIN (200) random pictures of each that are not in it, with
-another seed of the noise, as they are, and DISTURBED (50) of them in each of six ways. FOLDER (a temporary one by default) keeps
+another seed of the noise, as they are, and DISTURBED (200) of them in each of six ways. FOLDER (a temporary one by default) keeps
 descriptors, so that a run that was stopped goes on; give another for other numbers. Writes results/retrieval/models.json and
 confusion.png; most of the time goes to descriptors, some 15 a second on two free cores.
 """
@@ -27,7 +27,7 @@ from voldetail.library.groups import Group
 from voldetail.texture.structures import MODELS, StructureModel
 
 RESULTS = Path(__file__).resolve().parents[2] / "results" / "retrieval"
-ENTRIES, PLAIN, DISTURBED = 400, 200, 50
+ENTRIES, PLAIN, DISTURBED = 400, 200, 200
 Floats = NDArray[np.float64]
 
 
