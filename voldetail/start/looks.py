@@ -15,6 +15,7 @@ from voldetail.detail import Detail
 from voldetail.fit.archetypes import archetypes
 from voldetail.fit.candidates import Candidate, sampled
 from voldetail.fit.session import derived_seed
+from voldetail.fit.shown import FINEST_OCTAVE, LARGEST_CELL, SMALLEST_CELL
 from voldetail.fit.space import Kind, Space
 from voldetail.fit.starts import Start
 
@@ -27,7 +28,10 @@ WINDOW = 2.0
 FINE = 192
 """Pixels a side of the fit that a library is for, by which the finest cells and octaves are limited."""
 
-SPACE = Space(domain="solid", scale=(1.0 / (0.6 * WINDOW), FINE / (3.0 * WINDOW)), finest=FINE / (1.6 * WINDOW))
+SPACE = Space(
+    domain="solid", scale=(1.0 / (LARGEST_CELL * WINDOW), FINE / (SMALLEST_CELL * WINDOW)),
+    finest=FINE / (FINEST_OCTAVE * WINDOW),
+)  # fmt: skip
 """The space of a fit of a whole photo, see `fit.shown.space_of`."""
 
 SPREAD = 0.12
