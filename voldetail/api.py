@@ -16,13 +16,13 @@ from voldetail.detail import Detail, load_detail, save_detail
 from voldetail.errors import InputError, VoldetailError
 from voldetail.fit import FitResult, Progress
 from voldetail.fit import fit as fit_setup
+from voldetail.fit.warmstart import starts_from
 from voldetail.image import load_photo, luminance, save_image
 from voldetail.metric import Descriptor, describe, distance, distance_by_level
 from voldetail.report import write_report
-from voldetail.scene.lights_text import parse_light
-from voldetail.scene.setup import Light, Setup
-from voldetail.scene.setup_file import load_setup, setup_from
-from voldetail.start import starts_from
+from voldetail.setup.file import load_setup, setup_from
+from voldetail.setup.light import parse_light
+from voldetail.setup.setup import Light, Setup
 
 __all__ = [
     "Descriptor",

@@ -24,9 +24,9 @@ from voldetail.fit import fit
 from voldetail.fit.target import Target, make_target
 from voldetail.image import luminance
 from voldetail.metric import describe, distance
-from voldetail.scene.build import build
-from voldetail.scene.heightfield import HeightField
-from voldetail.scene.setup import Setup
+from voldetail.render.build import build
+from voldetail.render.heightfield import HeightField
+from voldetail.setup.setup import Setup
 
 METRICS = ("published", "combined", "patches")
 

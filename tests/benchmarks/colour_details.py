@@ -27,7 +27,7 @@ from voldetail.fit.objective import Objective
 from voldetail.fit.session import derived_seed
 from voldetail.fit.target import make_target
 from voldetail.image import resize
-from voldetail.scene.build import build
+from voldetail.render.build import build
 
 FITS = Path("results/fits")
 KINDS = ("none", "by-example", "height", "cell")

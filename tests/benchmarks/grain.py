@@ -9,11 +9,11 @@ from tests.benchmarks.texture_families import AZIMUTH, ELEVATION, TRUTHS
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail, with_values
 from voldetail.metric import describe, distance
-from voldetail.render import components
-from voldetail.scene.heightfield import HeightField
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.lights_text import direction_of
-from voldetail.scene.view import View
+from voldetail.render.heightfield import HeightField
+from voldetail.render.unit_components import components
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import direction_of
+from voldetail.setup.view import View
 
 SUBSAMPLES = (1, 2, 3, 4)
 PHOTOS = ("gravel", "grass")

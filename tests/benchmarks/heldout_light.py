@@ -45,13 +45,13 @@ from voldetail.files import write_text
 from voldetail.fit import fit
 from voldetail.fit.target import Target, make_target
 from voldetail.image import Photo, load_photo, luminance
-from voldetail.scene.build import build
-from voldetail.scene.heightfield import HeightField
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.lights_text import Light, parse_light
-from voldetail.scene.setup import Setup
-from voldetail.scene.setup_file import setup_from
-from voldetail.scene.view import Zone, view_of
+from voldetail.render.build import build
+from voldetail.render.heightfield import HeightField
+from voldetail.setup.file import setup_from
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import Light, parse_light
+from voldetail.setup.setup import Setup
+from voldetail.setup.view import Zone, view_of
 
 METRICS = ("combined", "patches", "jets", "lean", "published")
 """The first is what was minimised; patches, jets and lean take no part in it, and lean alone sees the lit side; the last is

@@ -41,11 +41,11 @@ from voldetail.detail import Reflectance
 from voldetail.files import write_text
 from voldetail.fit import fit
 from voldetail.image import Photo, luminance, resize, to_linear, to_srgb
-from voldetail.scene.build import build
-from voldetail.scene.heightfield import HeightField
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.lights_text import direction_of
-from voldetail.scene.setup_file import setup_from
+from voldetail.render.build import build
+from voldetail.render.heightfield import HeightField
+from voldetail.setup.file import setup_from
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import direction_of
 
 SIDE = 192
 """Pixels of a photo, the fit's default."""

@@ -24,7 +24,7 @@ from voldetail.backend import mitsuba
 from voldetail.files import write_text
 from voldetail.fit.lightguess import FAIRLY_SURE, FLOOR, guess_light
 from voldetail.image import load_photo, luminance
-from voldetail.scene.lights_text import angles_of, direction_of
+from voldetail.setup.light import angles_of, direction_of
 
 RENDERED = 100
 NEAR = 30.0  # degrees: an azimuth this near is a hit

@@ -22,13 +22,13 @@ from typing import Any
 import numpy as np
 
 from voldetail.backend import mitsuba
+from voldetail.field.medium import Medium
 from voldetail.files import write_text
-from voldetail.render import Components, components
-from voldetail.scene.density_grid import DensityGrid
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.marched import MarchedVolume
-from voldetail.scene.medium import Medium
-from voldetail.scene.view import View
+from voldetail.geometry.density_grid import DensityGrid
+from voldetail.render.marched import MarchedVolume
+from voldetail.render.unit_components import Components, components
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.view import View
 
 SIDE, FRAMES = 192, 7
 VIEW = View(-1.1, 1.1, -1.1, 1.1, SIDE, SIDE)

@@ -24,8 +24,8 @@ from voldetail.files import write_text
 from voldetail.fit import fit
 from voldetail.image import resize, save_image
 from voldetail.report import write_report
-from voldetail.scene.setup import Setup
-from voldetail.scene.setup_file import setup_from
+from voldetail.setup.file import setup_from
+from voldetail.setup.setup import Setup
 
 
 @dataclass(frozen=True)

@@ -24,11 +24,11 @@ from voldetail.fit.session import derived_seed
 from voldetail.fit.space import Kind, Space
 from voldetail.image import Photo, luminance, save_png, to_linear, to_srgb
 from voldetail.metric import describe, distance
-from voldetail.render import components
-from voldetail.scene.build import build
-from voldetail.scene.heightfield import HeightField
-from voldetail.scene.lamp import lamp_of
-from voldetail.scene.setup_file import setup_from
+from voldetail.render.build import build
+from voldetail.render.heightfield import HeightField
+from voldetail.render.unit_components import components
+from voldetail.setup.file import setup_from
+from voldetail.setup.lamp import lamp_of
 
 NAMES = ("ash", "beech", "cedar", "elm", "fir", "hazel", "larch", "maple", "oak", "pine", "rowan", "willow")
 SIDE = 192

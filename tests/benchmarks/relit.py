@@ -18,9 +18,9 @@ from voldetail.fit.reflectance import solve
 from voldetail.fit.target import Target, halves_apart
 from voldetail.image import to_srgb
 from voldetail.metric import describe, distance
-from voldetail.render import Components, components
-from voldetail.scene.heightfield import MARGIN, HeightField
-from voldetail.scene.lamp import Lamp
+from voldetail.render.heightfield import MARGIN, HeightField
+from voldetail.render.unit_components import Components, components
+from voldetail.setup.lamp import Lamp
 
 Picture = NDArray[np.float32]
 Mask = NDArray[np.bool_]

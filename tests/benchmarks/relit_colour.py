@@ -28,12 +28,12 @@ from voldetail.fit.objective import Objective
 from voldetail.fit.session import derived_seed
 from voldetail.fit.target import Target, make_target
 from voldetail.image import luminance
-from voldetail.render import components
-from voldetail.scene.build import build
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.setup import Light, Setup
-from voldetail.scene.setup_file import setup_from
-from voldetail.scene.view import Zone
+from voldetail.render.build import build
+from voldetail.render.unit_components import components
+from voldetail.setup.file import setup_from
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.setup import Light, Setup
+from voldetail.setup.view import Zone
 
 WAYS = ("one tint", "by example", "undivided", "auto")
 COLOURED = tuple(c for c in CAPTURES if c.name not in ("dea_squeeze_1",))

@@ -18,10 +18,10 @@ import numpy as np
 
 from tests.benchmarks.retrieval import NAMES, Array, library, mixtures
 from voldetail.library import nearest, open_library, random_values, vector_of
-from voldetail.library.build import build
+from voldetail.library.building.build import build
+from voldetail.library.building.source import Chunk
 from voldetail.library.index import nearest_by_index, open_index, write_index
 from voldetail.library.measures import MeasureName
-from voldetail.library.source import Chunk
 from voldetail.library.span import span_of, spanned
 from voldetail.texture.structures import MODELS, structure
 

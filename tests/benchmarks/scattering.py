@@ -58,15 +58,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.backend import mitsuba
+from voldetail.field.medium import Medium
 from voldetail.files import write_text
+from voldetail.geometry.density_grid import DensityGrid
 from voldetail.image import save_image
-from voldetail.render import components, traced_picture
-from voldetail.scene.density_grid import DensityGrid
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.marched import MarchedVolume
-from voldetail.scene.medium import Medium
-from voldetail.scene.traced_medium import TracedVolume
-from voldetail.scene.view import View
+from voldetail.render.marched import MarchedVolume
+from voldetail.render.traced_medium import TracedVolume
+from voldetail.render.unit_components import components, traced_picture
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.view import View
 
 ALBEDOS, ASYMMETRIES, THICKNESSES = (0.99, 0.8), (0.0, 0.5, 0.85), (0.3, 1.0, 3.0, 10.0, 30.0)
 SCATTERINGS, SAMPLES = 1024, 256

@@ -28,11 +28,11 @@ from voldetail.fit.search import CMAES, Memory, Vector, minimise
 from voldetail.fit.session import derived_seed
 from voldetail.image import to_srgb
 from voldetail.metric import describe, distance
-from voldetail.render import components
-from voldetail.scene.heightfield import HeightField
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.lights_text import direction_of
-from voldetail.scene.view import View
+from voldetail.render.heightfield import HeightField
+from voldetail.render.unit_components import components
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import direction_of
+from voldetail.setup.view import View
 
 RESULTS = Path(__file__).resolve().parents[2] / "results" / "metric"
 FOLDER = RESULTS / "searched"

@@ -18,7 +18,7 @@ from voldetail.apply import render
 from voldetail.detail import Detail, with_values
 from voldetail.files import write_text
 from voldetail.image import luminance, save_png
-from voldetail.scene.lights_text import parse_light
+from voldetail.setup.light import parse_light
 
 SIDE = 256
 CASES = {

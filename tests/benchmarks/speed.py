@@ -24,14 +24,14 @@ from voldetail.fit import fit
 from voldetail.fit.candidates import sampled
 from voldetail.fit.objective import Objective
 from voldetail.fit.reflectance import solve
+from voldetail.fit.resolvable import space_of
 from voldetail.fit.session import Progress
-from voldetail.fit.shown import space_of
 from voldetail.fit.target import make_target
 from voldetail.metric import describe, distance
-from voldetail.render import components
-from voldetail.scene.build import build
-from voldetail.scene.setup_file import setup_from
-from voldetail.scene.surface import MeshSurface
+from voldetail.render.build import build
+from voldetail.render.mesh_surface import MeshSurface
+from voldetail.render.unit_components import components
+from voldetail.setup.file import setup_from
 
 import drjit as dr  # isort: skip
 

@@ -21,8 +21,8 @@ from voldetail.backend import mitsuba
 from voldetail.files import write_text
 from voldetail.fit import FitResult, fit
 from voldetail.fit.session import Progress
+from voldetail.fit.warmstart import starts_from
 from voldetail.image import resize, to_srgb
-from voldetail.start import starts_from
 
 SIDE = 150
 """Pixels of a picture on the sheet."""

@@ -21,9 +21,9 @@ from tests.benchmarks.stationarize_photos import ONLY_SHOWN, Photograph, pixels,
 from tests.benchmarks.stationarize_sheets import sheet
 from tests.benchmarks.stationarize_summary import summarise
 from voldetail.files import write_text
-from voldetail.texture.stationarity_colour import to_lab
-from voldetail.texture.stationarity_measure import Measure, mean_difference
-from voldetail.texture.stationarize_tile import Tile, TileProgress, stationarize
+from voldetail.stationary.colour import to_lab
+from voldetail.stationary.measure import Measure, mean_difference
+from voldetail.stationary.tile import Tile, TileProgress, stationarize
 
 WAYS: dict[str, Measure | None] = {"plain": None, "histogram": "histogram"}
 SAMPLE = 4096  # pixels of a photograph, for the scale of the stationarity cost

@@ -25,10 +25,10 @@ from voldetail.fit.session import derived_seed
 from voldetail.fit.target import halves_apart, make_target
 from voldetail.image import load_photo, luminance, resize
 from voldetail.metric import describe, distance
-from voldetail.scene.build import build
-from voldetail.scene.setup import Setup
-from voldetail.scene.setup_file import setup_from
-from voldetail.scene.view import Zone
+from voldetail.render.build import build
+from voldetail.setup.file import setup_from
+from voldetail.setup.setup import Setup
+from voldetail.setup.view import Zone
 
 FOLDER = SHARED / "textures" / "nonstationary_zhou2018"
 PHOTOGRAPHS = (("200", "135,45"), ("222", "135,45"), ("27", "135,45"), ("72", "135,45"), ("415", "135,45"))

@@ -14,11 +14,11 @@ from voldetail.backend import mitsuba
 from voldetail.detail import Detail, with_values
 from voldetail.fit.space import profile
 from voldetail.image import to_linear, to_srgb
-from voldetail.render import components
-from voldetail.scene.heightfield import HeightField
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.lights_text import direction_of
-from voldetail.scene.view import View
+from voldetail.render.heightfield import HeightField
+from voldetail.render.unit_components import components
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import direction_of
+from voldetail.setup.view import View
 
 STEPS = np.linspace(0, 1, 7)
 

@@ -20,14 +20,14 @@ from typing import Any
 
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
+from voldetail.field.hypertexture import Hypertexture
+from voldetail.field.shell import make_shell
+from voldetail.field.shell_blocks import block_counts, near_blocks
+from voldetail.field.shell_plan import plan_shell
+from voldetail.field.tiled_surface import tiled_isosurface
 from voldetail.files import write_text
-from voldetail.scene.hypertexture import Hypertexture
-from voldetail.scene.isosurface import isosurface
-from voldetail.scene.setup import ProxySetup
-from voldetail.scene.shell import make_shell
-from voldetail.scene.shell_blocks import block_counts, near_blocks
-from voldetail.scene.shell_plan import plan_shell
-from voldetail.scene.tiled_surface import tiled_isosurface
+from voldetail.geometry.isosurface import isosurface
+from voldetail.setup.setup import ProxySetup
 
 AMPLITUDE, SCALE = 0.1, 4.0
 WAYS = ("tiled", "dense")

@@ -27,8 +27,8 @@ from voldetail.detail import Detail, load_detail, save_detail
 from voldetail.files import write_text
 from voldetail.fit import FitResult, fit
 from voldetail.image import load_photo, resize, save_image, save_png
-from voldetail.scene.lights_text import parse_light
-from voldetail.scene.setup_file import setup_from
+from voldetail.setup.file import setup_from
+from voldetail.setup.light import parse_light
 
 CLOUDS = "photos/clouds_kloofendal/clouds.png"
 SHAPES = ("sphere", "cylinder", "meshes/spot/spot.obj")

@@ -24,16 +24,16 @@ from voldetail.detail import Detail, Reflectance, rounded
 from voldetail.files import write_text
 from voldetail.fit import fit
 from voldetail.fit.ranges import MEDIUM_ROUGHNESS
+from voldetail.fit.resolvable import DEEPEST
 from voldetail.fit.session import derived_seed
-from voldetail.fit.shown import DEEPEST
 from voldetail.fit.space import Kind, Space
 from voldetail.image import Photo, luminance, save_png, to_linear, to_srgb
 from voldetail.metric import describe, distance
-from voldetail.render import components
-from voldetail.scene.build import build
-from voldetail.scene.lamp import lamp_of
-from voldetail.scene.setup import Setup
-from voldetail.scene.setup_file import setup_from
+from voldetail.render.build import build
+from voldetail.render.unit_components import components
+from voldetail.setup.file import setup_from
+from voldetail.setup.lamp import lamp_of
+from voldetail.setup.setup import Setup
 
 Look = Literal["surface", "medium"]
 CASES: dict[Look, tuple[str, ...]] = {

@@ -12,13 +12,13 @@ import pytest
 
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail, load_detail, with_values
+from voldetail.field.relief import relief_at
 from voldetail.fit.objective import Objective
 from voldetail.fit.target import make_target
-from voldetail.render import components
-from voldetail.scene.build import build
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.relief import relief_at
-from voldetail.scene.setup_file import setup_from
+from voldetail.render.build import build
+from voldetail.render.unit_components import components
+from voldetail.setup.file import setup_from
+from voldetail.setup.lamp import Lamp
 
 ROOT = Path(__file__).resolve().parents[2]
 FITS = sorted((ROOT / "results" / "fits").glob("*/detail.json"))

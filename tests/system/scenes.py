@@ -3,7 +3,7 @@
 from typing import Any
 
 from voldetail.detail import Detail, with_values
-from voldetail.scene.setup import Light, PhotoSetup, Setup
+from voldetail.setup.setup import Light, PhotoSetup, Setup
 
 SIDE = 64
 OVERHEAD = Light(direction=(0.0, 0.0, 1.0))

@@ -7,7 +7,7 @@ from voldetail.apply import bake, render
 from voldetail.cli import main
 from voldetail.detail import Detail, save_detail, with_values
 from voldetail.errors import InputError
-from voldetail.scene.density_file import read_density
+from voldetail.geometry.density_file import read_density
 
 SOLID = with_values(Detail(mode="volume"), {"relief.amplitude": 0.1, "noise.scale": 4.0})
 CLOUD = with_values(Detail(), {"medium.thickness": 0.4, "medium.exponent": 2.0, "relief.amplitude": 0.2, "noise.scale": 3.0})

@@ -24,7 +24,7 @@ from voldetail.detail import load_detail
 from voldetail.fit.state_file import load_state
 from voldetail.fit.target import load_photo_of
 from voldetail.image import load_photo
-from voldetail.scene.setup_file import load_setup
+from voldetail.setup.file import load_setup
 
 RESULTS = ["detail.json", "fit.png", "report.html", "setup.toml", "sheet.png", "state.json"]
 SMALL = ["skimage:gravel", "--light", "70,50", "--zone", "160,160,96,96", "--resolution", "64"]

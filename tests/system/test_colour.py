@@ -25,11 +25,11 @@ from voldetail.errors import InputError
 from voldetail.fit import FitResult, fit
 from voldetail.fit.colour import HANDICAPS
 from voldetail.image import Photo, luminance, save_image
-from voldetail.render import components
-from voldetail.scene.build import build
-from voldetail.scene.colour_plugin import colour_dict
-from voldetail.scene.lamp import Lamp, lamp_of
-from voldetail.scene.setup import FitSettings, Light, PhotoSetup, Setup
+from voldetail.render.build import build
+from voldetail.render.plugins.colour import colour_dict
+from voldetail.render.unit_components import components
+from voldetail.setup.lamp import Lamp, lamp_of
+from voldetail.setup.setup import FitSettings, Light, PhotoSetup, Setup
 from voldetail.texture import analyse, colour_at, picture
 
 LIGHT = Light(direction=(0.5, 0.3, 0.7))

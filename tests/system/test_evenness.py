@@ -15,8 +15,8 @@ from voldetail.fit.target import make_target
 from voldetail.fit.zone import around
 from voldetail.image import Photo, luminance, save_image
 from voldetail.report.facts import EVEN_ENOUGH
-from voldetail.scene.setup import Light, PhotoSetup, Setup
-from voldetail.scene.setup_file import setup_from
+from voldetail.setup.file import setup_from
+from voldetail.setup.setup import Light, PhotoSetup, Setup
 
 SIDE = 128
 ALL = np.ones((SIDE, SIDE), bool)

@@ -16,16 +16,16 @@ from voldetail.errors import InputError
 from voldetail.fit import FitResult, Progress, fit
 from voldetail.fit.interval import amplitude_interval
 from voldetail.fit.objective import Objective
+from voldetail.fit.resolvable import space_of
 from voldetail.fit.session import State
-from voldetail.fit.shown import space_of
 from voldetail.fit.space import Kind
 from voldetail.fit.state_file import load_state, save_state
 from voldetail.fit.target import make_target
 from voldetail.image import Photo, save_image
-from voldetail.render import components
-from voldetail.scene.build import build
-from voldetail.scene.lamp import lamp_of
-from voldetail.scene.setup import CameraSetup, FitSettings, Light, PhotoSetup, ProxySetup, Setup
+from voldetail.render.build import build
+from voldetail.render.unit_components import components
+from voldetail.setup.lamp import lamp_of
+from voldetail.setup.setup import CameraSetup, FitSettings, Light, PhotoSetup, ProxySetup, Setup
 
 LIGHT = Light(direction=(0.5, 0.3, 0.7))
 TRUTH = detail(noise__scale=6.0, relief__amplitude=0.06)

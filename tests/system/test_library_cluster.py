@@ -14,7 +14,7 @@ import pytest
 
 from voldetail.errors import InputError
 from voldetail.library import StructureSource
-from voldetail.library.build import BuildProgress, build, part_of
+from voldetail.library.building.build import BuildProgress, build, part_of
 from voldetail.texture.structures import MODELS
 
 distributed = pytest.importorskip("distributed")
@@ -99,7 +99,7 @@ def test_a_killed_worker_and_a_scheduler_that_goes_away_lose_nothing(
 
 
 def test_a_scheduler_that_is_not_there_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("voldetail.library.cluster.CONNECT_SECONDS", 0.2)
+    monkeypatch.setattr("voldetail.library.building.cluster.CONNECT_SECONDS", 0.2)
     for address, says in (
         ("tcp://127.0.0.1:9", "cannot be reached"), ("tcp://nowhere.invalid:80", "cannot be reached"), ("here", "is no address"),
         ("", "is no address"), ("file://x:1", "is no address"),

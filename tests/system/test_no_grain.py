@@ -5,10 +5,10 @@ import pytest
 
 from tests.system.scenes import detail
 from voldetail.metric import describe, distance
-from voldetail.render import components
-from voldetail.scene.heightfield import HeightField
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.view import View
+from voldetail.render.heightfield import HeightField
+from voldetail.render.unit_components import components
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.view import View
 
 SIDE = 96
 LAMP = Lamp(direction=(0.48, 0.36, 0.8))

@@ -11,7 +11,7 @@ from voldetail.cli import main, retrieve_command
 from voldetail.detail import StructureTexture
 from voldetail.detail.texture_file import load_texture
 from voldetail.image import save_png
-from voldetail.library import entries, known, recolour, table
+from voldetail.library import entries, novelty, recolour, table
 from voldetail.library.groups import Group, Groups
 from voldetail.texture.structures import MODELS, structure
 
@@ -31,7 +31,7 @@ def groups() -> Groups:
 def photo(tmp_path: Path, groups: Groups, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A photo of the third brick wall, turned by 45 degrees, with its tones exchanged."""
     monkeypatch.setattr(retrieve_command, "_groups", lambda library: groups)
-    monkeypatch.setattr(known, "PICTURES", 2)  # pictures of 256 pixels are what takes the time
+    monkeypatch.setattr(novelty, "PICTURES", 2)  # pictures of 256 pixels are what takes the time
     s = structure(MODELS["brick"], groups["brick"].parameters(2), 128, rotation=np.pi / 4)
     s = (s - s.min()) / (s.max() - s.min())
     save_png(tmp_path / "photo.png", recolour(1 - s, DARK, BRIGHT))
@@ -100,7 +100,7 @@ def test_a_zone_a_mask_and_a_scale(photo: Path, tmp_path: Path, capsys: pytest.C
 def test_a_library_s_file_and_the_default_library_are_searched(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(known, "PICTURES", 1)
+    monkeypatch.setattr(novelty, "PICTURES", 1)
     monkeypatch.setattr(retrieve_command, "DEFAULT_ENTRIES", 1)
     monkeypatch.setenv("VOLDETAIL_CACHE", str(tmp_path / "cache"))
     save_png(tmp_path / "photo.png", recolour(structure(MODELS["star"], {"tips": 5}, 128), DARK, BRIGHT))

@@ -13,22 +13,22 @@ from voldetail.errors import InputError
 from voldetail.fit import fit
 from voldetail.fit.fitter import takes_starts
 from voldetail.fit.session import State
-from voldetail.fit.starts import Start
 from voldetail.fit.state_file import load_state
 from voldetail.fit.target import Target, load_photo_of, make_target
+from voldetail.fit.warmstart import ReliefSource, starts_from
+from voldetail.fit.warmstart.light import direction_at_zone
+from voldetail.fit.warmstart.nearest import nearest_reliefs
+from voldetail.fit.warmstart.reliefs import FINE, SPACE, look
+from voldetail.fit.warmstart.start import Start
 from voldetail.image import Photo, save_png
-from voldetail.library.build import build as build_library
+from voldetail.library.building.build import build as build_library
 from voldetail.library.store import Library, open_library
-from voldetail.render import components
-from voldetail.scene.build import build
-from voldetail.scene.lamp import lamp_of
-from voldetail.scene.setup import Setup
-from voldetail.scene.setup_file import setup_from
-from voldetail.scene.view import view_of
-from voldetail.start import ReliefSource, starts_from
-from voldetail.start.light import direction_at_zone
-from voldetail.start.looks import FINE, SPACE, look
-from voldetail.start.nearest import nearest_reliefs
+from voldetail.render.build import build
+from voldetail.render.unit_components import components
+from voldetail.setup.file import setup_from
+from voldetail.setup.lamp import lamp_of
+from voldetail.setup.setup import Setup
+from voldetail.setup.view import view_of
 
 LOOKS = 48
 
@@ -148,7 +148,7 @@ def test_what_is_no_library_of_reliefs_is_refused(reliefs: Library, tmp_path: Pa
     target = make_target(setup, photo)
     with pytest.raises(InputError, match="does not exist"):
         starts_from(setup, target)
-    monkeypatch.setattr("voldetail.start.source.PICTURES_VERSION", 2)
+    monkeypatch.setattr("voldetail.fit.warmstart.source.PICTURES_VERSION", 2)
     with pytest.raises(InputError, match=r"out of date: its reliefs .* voldetail library build relief -o"):
         starts_from(wanted("0,50", str(reliefs.header.path)), target)
 

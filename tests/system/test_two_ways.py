@@ -10,17 +10,17 @@ from numpy.typing import NDArray
 from tests.system.scenes import SIDE, detail, setup
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
+from voldetail.geometry.proxy import make_proxy, seen_part
 from voldetail.metric import describe, distance
-from voldetail.render import Components, components
-from voldetail.scene import heightfield, surface
-from voldetail.scene.build import SHADOW_REACH, build
-from voldetail.scene.heightfield import HeightField
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.lights_text import direction_of
-from voldetail.scene.proxy import make_proxy, seen_part
-from voldetail.scene.setup import CameraSetup, ProxySetup
-from voldetail.scene.surface import MeshSurface
-from voldetail.scene.view import View
+from voldetail.render import heightfield, mesh_surface
+from voldetail.render.build import SHADOW_REACH, build
+from voldetail.render.heightfield import HeightField
+from voldetail.render.mesh_surface import MeshSurface
+from voldetail.render.unit_components import Components, components
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import direction_of
+from voldetail.setup.setup import CameraSetup, ProxySetup
+from voldetail.setup.view import View
 
 WAYS = [True, False]
 NAMES = {True: "height field", False: "mesh"}
@@ -132,7 +132,7 @@ def step(monkeypatch: pytest.MonkeyPatch) -> None:
         return mitsuba().Float(np.where(np.array(domain[0]) < 0, 1.0, 0.0).astype(np.float32)), None
 
     monkeypatch.setattr(heightfield, "relief_and_albedo", relief)
-    monkeypatch.setattr(surface, "relief_and_albedo", relief)
+    monkeypatch.setattr(mesh_surface, "relief_and_albedo", relief)
 
 
 @two_ways

@@ -14,15 +14,15 @@ from voldetail.detail import Detail, load_detail, rounded, save_detail, with_val
 from voldetail.errors import InputError
 from voldetail.fit import FitResult, fit
 from voldetail.fit.fitter import coloured
+from voldetail.fit.identifiability import NUMBERS
 from voldetail.fit.objective import Objective
 from voldetail.fit.target import make_target
-from voldetail.fit.told import NUMBERS
 from voldetail.image import Photo, load_photo, luminance
-from voldetail.render import components
-from voldetail.scene.build import build
-from voldetail.scene.lamp import lamp_of
-from voldetail.scene.lights_text import parse_light
-from voldetail.scene.setup import FitSettings, PhotoSetup, Setup
+from voldetail.render.build import build
+from voldetail.render.unit_components import components
+from voldetail.setup.lamp import lamp_of
+from voldetail.setup.light import parse_light
+from voldetail.setup.setup import FitSettings, PhotoSetup, Setup
 
 SIDE = 64
 BLUE = (0.12, 0.2, 0.4548)  # luminance 0.2

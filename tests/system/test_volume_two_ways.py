@@ -9,17 +9,17 @@ from tests.system.scenes import detail
 from tests.unit.densities import cloud, points, sampled, slab, sphere
 from tests.unit.test_marched import HEIGHTS, phase
 from voldetail.backend import mitsuba
-from voldetail.render import Components, components, traced_picture
-from voldetail.scene.density_grid import DensityGrid
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.lookup import with_gradient
-from voldetail.scene.marched import MarchedVolume
-from voldetail.scene.medium import Medium
-from voldetail.scene.proxy import make_proxy
-from voldetail.scene.setup import ProxySetup
-from voldetail.scene.surface import MeshSurface
-from voldetail.scene.traced_medium import OPAQUE, TracedVolume, box_of
-from voldetail.scene.view import View
+from voldetail.field.medium import Medium
+from voldetail.geometry.density_grid import DensityGrid
+from voldetail.geometry.lookup import with_gradient
+from voldetail.geometry.proxy import make_proxy
+from voldetail.render.marched import MarchedVolume
+from voldetail.render.mesh_surface import MeshSurface
+from voldetail.render.traced_medium import OPAQUE, TracedVolume, box_of
+from voldetail.render.unit_components import Components, components, traced_picture
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.setup import ProxySetup
+from voldetail.setup.view import View
 
 MIDDLE = View(-0.2, 0.2, -0.2, 0.2, 16, 16)
 WHOLE = View(-1.0, 1.0, -1.0, 1.0, 32, 32)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.backend import mitsuba
-from voldetail.scene.density_grid import DensityGrid
+from voldetail.geometry.density_grid import DensityGrid
 
 Array = NDArray[np.float64]
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from voldetail.errors import InputError
+from voldetail.library.building.source import Chunk
 from voldetail.library.measures import MeasureName
-from voldetail.library.source import Chunk
 
 
 @dataclass(frozen=True)

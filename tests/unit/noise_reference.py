@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from voldetail.noise import grains
-from voldetail.noise import octave as constants
-from voldetail.noise.gabor import ETA, OCTAVE_SALT
+from voldetail.noise import gabor as constants
+from voldetail.noise import stones
 from voldetail.noise.moments import MOMENT_BLOCK, MOMENT_SALT, MOMENT_SAMPLES
 from voldetail.noise.plates import PLATE_SALT
+from voldetail.noise.relief import ETA, OCTAVE_SALT
 
 Floats = NDArray[np.float64]
 QUATERNION = [math.sqrt(2), 1.0, math.sqrt(3) / 2, (math.sqrt(5) - 1) / 2]
@@ -105,7 +105,7 @@ def highest_grain(
     offsets = np.array(list(itertools.product(range(-3, 4), repeat=x.shape[1])))
     points, words = feature_points(np.floor(x).astype(np.int64)[:, None] + offsets, salt)
     vectors = points - x[:, None]
-    mixed = (words ^ (words >> np.uint32(15))) * np.uint32(grains.SHAPE_SALT)
+    mixed = (words ^ (words >> np.uint32(15))) * np.uint32(stones.SHAPE_SALT)
     mixed = mixed ^ (mixed >> np.uint32(13))
     drawn = [((mixed >> np.uint32(8 * byte)) & np.uint32(255)) / 256 for byte in range(3)]
     thin = [np.ones_like(drawn[0]), *(1 + (elongation - 1) * d for d in drawn[1:])][: x.shape[1]]
@@ -120,7 +120,7 @@ def highest_grain(
     sizes = np.abs(w)
     angular = math.hypot(1.0, 0.5) * np.maximum(sizes.max(-1), sizes.sum(-1) / 1.5)
     gauge = (1 - facets) * np.linalg.norm(w, axis=-1) + facets * angular
-    share = gauge / (grains.GRAIN_RADIUS[x.shape[1]] * (1 - spread * drawn[0]))
+    share = gauge / (stones.GRAIN_RADIUS[x.shape[1]] * (1 - spread * drawn[0]))
     height = 1 - share ** (2 if rounded else 1)
     top = height.argmax(1)
     rows = np.arange(len(x))

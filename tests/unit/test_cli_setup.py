@@ -7,7 +7,7 @@ import pytest
 
 from voldetail.cli.fit_setup import KEYS, output_folder, read_setup
 from voldetail.errors import InputError
-from voldetail.scene.setup import Setup
+from voldetail.setup.setup import Setup
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 

@@ -7,10 +7,10 @@ import pytest
 
 from voldetail.backend import mitsuba
 from voldetail.errors import InputError
-from voldetail.scene.density_file import read_density, write_density
-from voldetail.scene.density_grid import DensityGrid
-from voldetail.scene.meshes import load_mesh
-from voldetail.scene.topology import signed_volume
+from voldetail.geometry.density_file import read_density, write_density
+from voldetail.geometry.density_grid import DensityGrid
+from voldetail.geometry.meshes import load_mesh
+from voldetail.geometry.topology import signed_volume
 
 HEADER = struct.Struct("<4s5i6f")
 

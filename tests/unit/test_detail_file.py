@@ -21,9 +21,9 @@ from voldetail.detail import (
     with_values,
 )
 from voldetail.detail.file import MIGRATIONS
-from voldetail.detail.reading import LARGEST_FILE
 from voldetail.detail.record import DETAIL_VERSION
 from voldetail.errors import InputError
+from voldetail.records.reading import LARGEST_FILE
 
 PROVENANCE = Provenance(
     voldetail="0.1.0",

@@ -19,11 +19,11 @@ import drjit as dr  # noqa: E402
 
 from voldetail.detail import Detail  # noqa: E402
 from voldetail.errors import InputError  # noqa: E402
-from voldetail.scene.hypertexture import Hypertexture  # noqa: E402
-from voldetail.scene.relief import relief_at  # noqa: E402
-from voldetail.scene.setup import ProxySetup  # noqa: E402
-from voldetail.scene.shell import Shell, make_shell  # noqa: E402
-from voldetail.scene.shell_plan import plan_shell  # noqa: E402
+from voldetail.field.hypertexture import Hypertexture  # noqa: E402
+from voldetail.field.relief import relief_at  # noqa: E402
+from voldetail.field.shell import Shell, make_shell  # noqa: E402
+from voldetail.field.shell_plan import plan_shell  # noqa: E402
+from voldetail.setup.setup import ProxySetup  # noqa: E402
 
 RNG = np.random.default_rng(6)
 

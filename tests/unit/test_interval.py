@@ -7,7 +7,7 @@ import pytest
 
 from voldetail.fit import interval
 from voldetail.fit.interval import TOLERANCE, _ends, _lamps
-from voldetail.scene.lamp import Lamp
+from voldetail.setup.lamp import Lamp
 
 AMPLITUDES = np.array([0.01, 0.02, 0.04, 0.08, 0.16])
 

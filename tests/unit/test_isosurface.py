@@ -17,12 +17,12 @@ mi: ModuleType = mitsuba()  # before Dr.Jit is imported, which would pick an LLV
 
 from voldetail.detail import Detail  # noqa: E402
 from voldetail.errors import InputError  # noqa: E402
-from voldetail.scene.density_grid import DensityGrid  # noqa: E402
-from voldetail.scene.hypertexture import Hypertexture  # noqa: E402
-from voldetail.scene.isosurface import Isosurface, isosurface, surface_cost  # noqa: E402
-from voldetail.scene.setup import ProxySetup  # noqa: E402
-from voldetail.scene.shell import Shell, make_shell  # noqa: E402
-from voldetail.scene.shell_plan import plan_shell  # noqa: E402
+from voldetail.field.hypertexture import Hypertexture  # noqa: E402
+from voldetail.field.shell import Shell, make_shell  # noqa: E402
+from voldetail.field.shell_plan import plan_shell  # noqa: E402
+from voldetail.geometry.density_grid import DensityGrid  # noqa: E402
+from voldetail.geometry.isosurface import Isosurface, isosurface, surface_cost  # noqa: E402
+from voldetail.setup.setup import ProxySetup  # noqa: E402
 
 
 def shell_of(edge: float = 0.05, amplitude: float = 0.0, **fields: Any) -> Shell:

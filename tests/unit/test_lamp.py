@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from voldetail.backend import mitsuba
 from voldetail.errors import InputError
-from voldetail.scene.lamp import Lamp, flash_foot, lamp_of
-from voldetail.scene.lights_text import parse_light
-from voldetail.scene.setup import Light
+from voldetail.setup.lamp import Lamp, flash_foot, lamp_of
+from voldetail.setup.light import parse_light
+from voldetail.setup.setup import Light
 
 
 def spot(rows: int, columns: int, row: float, column: float, width: float = 0.2) -> NDArray[np.float32]:

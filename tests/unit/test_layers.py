@@ -125,7 +125,7 @@ def test_every_part_is_in_the_table() -> None:
     [
         ("noise/a.py", "from voldetail.image import luminance", "noise may not import image"),
         ("noise/a.py", "import mitsuba as mi", "only backend imports mitsuba"),
-        ("scene/a.py", "def f():\n    from voldetail.render import components", "scene may not import render"),
+        ("scene/a.py", "def f():\n    from voldetail.render.unit_components import components", "scene may not import render"),
         ("scene/a.py", "from ..fit import objective", "scene may not import fit"),
         ("detail/a.py", "from voldetail import scene", "detail may not import scene"),
         ("apply/a.py", "from voldetail.fit.fitter import FitResult", "apply may not import fit"),

@@ -9,10 +9,10 @@ import pytest
 from library_sources import Counted, files_of
 
 from voldetail.errors import InputError
-from voldetail.library.build import BuildProgress, build, part_of
-from voldetail.library.plan import Plan
-from voldetail.library.source import Source, StructureSource
-from voldetail.library.staging import Staging
+from voldetail.library.building.build import BuildProgress, build, part_of
+from voldetail.library.building.plan import Plan
+from voldetail.library.building.source import Source, StructureSource
+from voldetail.library.building.staging import Staging
 from voldetail.texture.structures import MODELS
 
 SOURCES = (Counted(), Counted("other", keys=("a",), seed=7, parallel=False))

@@ -7,7 +7,7 @@ from library_sources import Counted
 
 from voldetail.errors import InputError
 from voldetail.library import cache
-from voldetail.library.build import BuildProgress
+from voldetail.library.building.build import BuildProgress
 
 
 def test_a_library_is_built_once_and_again_when_it_is_damaged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,10 +10,10 @@ from library_sources import Counted
 
 from voldetail.errors import InputError
 from voldetail.library import Library, nearest, open_library, swapped, turned
-from voldetail.library.build import build
+from voldetail.library.building.build import build
+from voldetail.library.building.source import Chunk
 from voldetail.library.index import ENTRIES_A_CELL, HEAD, nearest_by_index, open_index, write_index
 from voldetail.library.measures import MeasureName
-from voldetail.library.source import Chunk
 
 COUNT = 12 * ENTRIES_A_CELL + 7
 

@@ -12,7 +12,7 @@ from library_sources import Counted, files_of
 
 from voldetail.errors import InputError
 from voldetail.library import Group, StructureSource, nearest, open_library, table
-from voldetail.library.build import build
+from voldetail.library.building.build import build
 from voldetail.library.check import check
 from voldetail.library.layout import arrays_of, step_of
 from voldetail.library.store import read_header

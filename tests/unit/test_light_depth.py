@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from tests.unit.densities import points, sampled, sphere
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.light_depth import LightDepth
+from voldetail.render.optical_depth import LightDepth
+from voldetail.setup.lamp import Lamp
 
 SHAPE, LOWER, EDGE = (10, 24, 16), (-0.8, -1.2, -0.5), 0.1
 UPPER = np.array(LOWER) + EDGE * np.array(SHAPE[::-1])

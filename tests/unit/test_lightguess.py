@@ -12,9 +12,9 @@ from voldetail.errors import InputError
 from voldetail.fit.autolight import resolve_light
 from voldetail.fit.lightguess import FLOOR, guess_light
 from voldetail.image import Photo, load_photo, luminance
-from voldetail.scene.lights_text import angles_of
-from voldetail.scene.setup import Setup
-from voldetail.scene.setup_file import setup_from
+from voldetail.setup.file import setup_from
+from voldetail.setup.light import angles_of
+from voldetail.setup.setup import Setup
 
 
 def lumps(azimuth: float, elevation: float = 40.0, side: int = 160, seed: int = 1) -> NDArray[np.float32]:

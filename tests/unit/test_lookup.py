@@ -6,7 +6,7 @@ from scipy.ndimage import map_coordinates, maximum_filter
 
 from tests.unit.densities import cloud, points, sampled
 from voldetail.backend import mitsuba
-from voldetail.scene.lookup import BLOCK, Emptiness, Lookup, with_gradient
+from voldetail.geometry.lookup import BLOCK, Emptiness, Lookup, with_gradient
 
 RNG = np.random.default_rng(3)
 LOWER, EDGE, SHAPE = (-0.3, 0.2, -0.9), 0.11, (5, 9, 13)

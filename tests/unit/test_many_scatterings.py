@@ -10,12 +10,12 @@ import pytest
 from tests.unit.densities import cloud, sampled, slab
 from tests.unit.test_marched import HEIGHTS, MIDDLE, OBLIQUE, VIEW, look
 from voldetail.errors import InputError
-from voldetail.render import components
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.many_scatterings import Diffusion, of_a_half
-from voldetail.scene.marched import MarchedVolume
-from voldetail.scene.medium import Medium
-from voldetail.scene.view import View
+from voldetail.field.medium import Medium
+from voldetail.render.many_scatterings import Diffusion, of_a_half
+from voldetail.render.marched import MarchedVolume
+from voldetail.render.unit_components import components
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.view import View
 
 
 @pytest.mark.parametrize("g", [0.0, 0.6, -0.3])

@@ -9,14 +9,13 @@ import pytest
 
 from tests.unit.densities import Array, cloud, sampled, slab, sphere
 from voldetail.backend import mitsuba
+from voldetail.field.medium import Medium
 from voldetail.fit.reflectance import solve
-from voldetail.render import Components, components
-from voldetail.scene import marched
-from voldetail.scene.density_grid import DensityGrid
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.marched import MarchedVolume
-from voldetail.scene.medium import Medium
-from voldetail.scene.view import View
+from voldetail.geometry.density_grid import DensityGrid
+from voldetail.render.marched import MarchedVolume
+from voldetail.render.unit_components import Components, components, marched
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.view import View
 
 VIEW = View(-1.1, 1.1, -1.1, 1.1, 48, 48)
 MIDDLE = View(-0.2, 0.2, -0.2, 0.2, 8, 8)

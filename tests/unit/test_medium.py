@@ -10,12 +10,12 @@ import pytest
 from tests.unit.densities import cloud, sampled
 from voldetail.backend import mitsuba
 from voldetail.errors import InputError
-from voldetail.scene.density_grid import DensityGrid
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.marched import MarchedVolume
-from voldetail.scene.medium import Medium, check, reflected, tinted_albedo
-from voldetail.scene.traced_medium import TracedVolume
-from voldetail.scene.view import View
+from voldetail.field.medium import Medium, check, reflected, tinted_albedo
+from voldetail.geometry.density_grid import DensityGrid
+from voldetail.render.marched import MarchedVolume
+from voldetail.render.traced_medium import TracedVolume
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.view import View
 
 VIEW = View(-1.0, 1.0, -1.0, 1.0, 8, 8)
 LAMP = Lamp(direction=(0.0, 0.6, 0.8))

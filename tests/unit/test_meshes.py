@@ -12,9 +12,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from voldetail.errors import InputError
-from voldetail.scene.mesh_files import MAX_FACES, SUFFIXES
-from voldetail.scene.meshes import load_mesh, normalise
-from voldetail.scene.topology import consistent_winding, signed_volume, smooth_normals
+from voldetail.geometry.mesh_files import MAX_FACES, SUFFIXES
+from voldetail.geometry.meshes import load_mesh, normalise
+from voldetail.geometry.topology import consistent_winding, signed_volume, smooth_normals
 
 FUZZ = settings(
     max_examples=200,
@@ -247,7 +247,7 @@ def test_too_many_faces_are_refused_from_the_header(tmp_path, name, content):
 
 
 def test_a_scene_that_places_one_part_too_often_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("voldetail.scene.mesh_files.MAX_FACES", 30)
+    monkeypatch.setattr("voldetail.geometry.mesh_files.MAX_FACES", 30)
     scene = trimesh.Scene()
     scene.add_geometry(CUBE, geom_name="cube")
     for i in range(1, 3):

@@ -8,7 +8,7 @@ from voldetail.image import to_linear, to_srgb
 from voldetail.metric import describe, distance, distance_by_level
 from voldetail.metric.granulometry import KINDS, RADII, _residue, measure
 from voldetail.metric.layers import layers
-from voldetail.metric.swells import NAMES
+from voldetail.metric.low_pass import NAMES
 
 SIDE = 128
 

@@ -7,8 +7,8 @@ from scipy.ndimage import gaussian_filter
 
 from voldetail.image import to_linear
 from voldetail.metric import METRICS, describe, distance
+from voldetail.metric.gradient_skew import LAGS, measure
 from voldetail.metric.layers import layers
-from voldetail.metric.lean import LAGS, measure
 
 Image = NDArray[np.float32]
 ACROSS = LAGS.index((0, 2))

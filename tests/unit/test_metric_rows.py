@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from voldetail.errors import InputError
 from voldetail.image import resize, to_linear
 from voldetail.metric import describe, distance
-from voldetail.metric.rows import BLOCK, distances, parts, row_length, row_of
+from voldetail.metric.vector import BLOCK, distances, parts, row_length, row_of
 
 Array = NDArray[np.float32]
 

@@ -15,7 +15,7 @@ mi: ModuleType = mitsuba()  # before Dr.Jit is imported, which would pick an LLV
 import drjit as dr  # noqa: E402
 from drjit.llvm.ad import Float64  # noqa: E402
 
-from voldetail.noise import KERNEL_RADIUS, NoiseSettings, octave, relief_function  # noqa: E402
+from voldetail.noise import KERNEL_RADIUS, NoiseSettings, gabor, relief_function  # noqa: E402
 
 SALT = 1993
 SETS = [(1, 50), (1, 1), (1, 2), (2, 2), (2, 3), (3, 3)]
@@ -40,7 +40,7 @@ def octave_of(
 ) -> np.ndarray:
     settings = NoiseSettings.from_ranks(x.shape[1], *ranks, 1, gaussian)
     salt, phi, theta = dr.opaque(mi.UInt32, SALT), dr.opaque(Float64, phi), dr.opaque(Float64, theta)
-    return octave.single_octave(columns(x), settings, salt, phi, theta).numpy()
+    return gabor.single_octave(columns(x), settings, salt, phi, theta).numpy()
 
 
 def relief_of(
@@ -158,7 +158,7 @@ def test_no_jump_along_lines(dims: int, ranks: tuple[int, int], phi: float) -> N
 
 @pytest.mark.parametrize("ranks", [(1, 1), (1, 2), (2, 3)])
 def test_without_the_fade_there_are_jumps(ranks: tuple[int, int], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(octave, "RANK_FADE", 1e-9)
+    monkeypatch.setattr(gabor, "RANK_FADE", 1e-9)
     assert largest_step(2, ranks, 1.0, 1e-4) > 3 * steepest(ranks, 1.0) * 1e-4
 
 
@@ -187,7 +187,7 @@ def test_signed_points_are_continuous_and_vanish_at_borders_of_grains() -> None:
 
     def signed(phi: float) -> np.ndarray:
         arrays = dr.opaque(mi.UInt32, SALT), dr.opaque(Float64, phi), dr.opaque(Float64, 2.0)
-        return octave.single_octave(columns(line), settings, *arrays).numpy()
+        return gabor.single_octave(columns(line), settings, *arrays).numpy()
 
     plain = signed(0.0)
     expected = octave_of(line, (1, 1), 0.0, 0.0) - octave_of(line, (2, 2), 0.0, 0.0)

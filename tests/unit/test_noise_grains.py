@@ -16,7 +16,7 @@ import drjit as dr  # noqa: E402
 from drjit.llvm.ad import Float64  # noqa: E402
 
 from voldetail.noise import GrainShape, NoiseSettings, nearest_points, number_of, relief_function  # noqa: E402
-from voldetail.noise.grains import GRAIN_RADIUS, highest_grain  # noqa: E402
+from voldetail.noise.stones import GRAIN_RADIUS, highest_grain  # noqa: E402
 
 SALT = 1993
 SHAPES = [(0.0, 1.0, 0.0), (1.0, 1.0, 0.0), (0.6, 2.1, 0.5), (1.0, 4.0, 0.8)]

@@ -18,6 +18,7 @@ import drjit as dr  # noqa: E402
 from drjit.llvm.ad import Float64  # noqa: E402
 
 from voldetail.detail import Detail, with_values  # noqa: E402
+from voldetail.field.relief import relief_at, settings_of  # noqa: E402
 from voldetail.noise import (  # noqa: E402
     NoiseSettings,
     PlateShape,
@@ -28,7 +29,6 @@ from voldetail.noise import (  # noqa: E402
     single_octave,
 )
 from voldetail.noise.plates import plate  # noqa: E402
-from voldetail.scene.relief import relief_at, settings_of  # noqa: E402
 
 SALT = 1993
 SHAPES = [(1.3, 0.0, 0.12), (0.0, 2.0, 0.05), (2.0, 1.5, 0.5)]

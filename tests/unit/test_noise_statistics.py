@@ -14,13 +14,13 @@ import drjit as dr  # noqa: E402
 
 from voldetail.noise import (  # noqa: E402
     NoiseSettings,
+    gabor,
     moments,
     nearest_points,
-    octave,
     relief_function,
     single_octave,
 )
-from voldetail.noise.gabor import ETA, OCTAVE_SALT, frame  # noqa: E402
+from voldetail.noise.relief import ETA, OCTAVE_SALT, frame  # noqa: E402
 
 SETS = [(1, 50), (1, 2), (2, 2), (2, 3)]
 PLAIN = {
@@ -121,7 +121,7 @@ def test_a_plane_looks_the_same_at_every_height(
     mean, deviation = spread_over_heights(ranks)
     assert mean < 0.04
     assert deviation < 0.04
-    monkeypatch.setattr("voldetail.noise.gabor.TURN", np.eye(3))  # the turn of the lattice is what does it
+    monkeypatch.setattr("voldetail.noise.relief.TURN", np.eye(3))  # the turn of the lattice is what does it
     assert spread_over_heights(ranks)[1] > 0.1
 
 
@@ -172,4 +172,4 @@ def test_what_is_said_of_the_round_envelope() -> None:
             ratios.append((s / m) / (s_plain / m_plain))
     assert min(ratios) == pytest.approx(1.4, abs=0.05)
     assert max(ratios) == pytest.approx(2.9, abs=0.05)
-    assert octave.GAUSSIAN_SIGMA == 0.35
+    assert gabor.GAUSSIAN_SIGMA == 0.35

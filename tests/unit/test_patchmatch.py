@@ -5,11 +5,11 @@ import pytest
 from scipy import ndimage
 
 from voldetail.errors import InputError
-from voldetail.texture.patchmatch import allowed, centres, differences, enlarged, from_centres, search
-from voldetail.texture.patchmatch_arrays import PATCH, RADIUS, vote, wrapped
-from voldetail.texture.patchmatch_source import Source
-from voldetail.texture.patchmatch_vote import carry
-from voldetail.texture.stationarize_levels import TOP_ITERATIONS
+from voldetail.stationary.levels import TOP_ITERATIONS
+from voldetail.stationary.patchmatch import allowed, centres, differences, enlarged, from_centres, search
+from voldetail.stationary.patchmatch_arrays import PATCH, RADIUS, vote, wrapped
+from voldetail.stationary.patchmatch_source import Source
+from voldetail.stationary.patchmatch_vote import carry
 
 
 def picture(shape: tuple[int, int], seed: int) -> np.ndarray:

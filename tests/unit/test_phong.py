@@ -12,7 +12,7 @@ mi: ModuleType = mitsuba()  # before Dr.Jit is imported, which would pick an LLV
 
 import drjit as dr  # noqa: E402
 
-from voldetail.scene.phong import phong_dict, principled_equivalent, register  # noqa: E402
+from voldetail.render.plugins.phong import phong_dict, principled_equivalent, register  # noqa: E402
 
 PLUGIN = register()
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from voldetail.scene.proxy import Proxy, make_proxy
-from voldetail.scene.setup import ProxySetup
-from voldetail.scene.topology import crosses, edges, signed_volume, weld
+from voldetail.geometry.proxy import Proxy, make_proxy
+from voldetail.geometry.topology import crosses, edges, signed_volume, weld
+from voldetail.setup.setup import ProxySetup
 
 EDGE = 0.08
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from voldetail.fit.reflectance import DARKEST_BACKGROUND, GLOSS_LIMIT, RANKS, bounded_least_squares, colours, solve
-from voldetail.render import SHININESS, Components
+from voldetail.render.unit_components import SHININESS, Components
 
 SIDE = 48
 WHOLE = np.ones((SIDE, SIDE), dtype=bool)

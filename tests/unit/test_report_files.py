@@ -18,14 +18,14 @@ from voldetail.apply.gallery import Gallery
 from voldetail.detail import Detail, NoiseFloor
 from voldetail.fit.colour import ColourChoice
 from voldetail.fit.fitter import FitResult
+from voldetail.fit.identifiability import Told
 from voldetail.fit.interval import AmplitudeInterval
-from voldetail.fit.told import Told
 from voldetail.image import Photo
 from voldetail.report import write_report
 from voldetail.report.facts import amplitude_words, duration, facts, light_words, medium_words
 from voldetail.report.page import page
-from voldetail.scene.lights_text import parse_light
-from voldetail.scene.setup_file import setup_from
+from voldetail.setup.file import setup_from
+from voldetail.setup.light import parse_light
 
 
 def picture(rows: int, columns: int, level: float = 0.3) -> Any:

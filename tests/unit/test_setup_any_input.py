@@ -9,13 +9,13 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from voldetail.errors import InputError
-from voldetail.scene.setup import DEFAULT_SIZES, Setup
-from voldetail.scene.setup_file import (
+from voldetail.setup.file import (
     load_setup,
     setup_from,
     setup_from_text,
     setup_to_toml,
 )
+from voldetail.setup.setup import DEFAULT_SIZES, Setup
 
 SMALL = """
 light = "70,50"

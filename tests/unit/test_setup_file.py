@@ -5,16 +5,16 @@ from pathlib import Path
 
 import pytest
 
-from voldetail.detail.reading import LARGEST_FILE
 from voldetail.errors import InputError
-from voldetail.scene.lights_text import parse_light
-from voldetail.scene.setup import DEFAULT_SIZES, CameraSetup, ProxySetup
-from voldetail.scene.setup_file import (
+from voldetail.records.reading import LARGEST_FILE
+from voldetail.setup.file import (
     load_setup,
     setup_from,
     setup_from_text,
     setup_to_toml,
 )
+from voldetail.setup.light import parse_light
+from voldetail.setup.setup import DEFAULT_SIZES, CameraSetup, ProxySetup
 
 SMALL = """
 light = "70,50"

@@ -7,9 +7,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from voldetail.errors import InputError
-from voldetail.scene.lights_text import angles_of, direction_of, light_text, parse_light
-from voldetail.scene.setup import Light
-from voldetail.scene.setup_file import setup_from
+from voldetail.setup.file import setup_from
+from voldetail.setup.light import angles_of, direction_of, light_text, parse_light
+from voldetail.setup.setup import Light
 
 
 @pytest.mark.parametrize(

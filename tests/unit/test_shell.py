@@ -18,11 +18,11 @@ mi: ModuleType = mitsuba()  # before Dr.Jit is imported, which would pick an LLV
 import drjit as dr  # noqa: E402
 
 from voldetail.errors import InputError  # noqa: E402
-from voldetail.scene import signed_distance  # noqa: E402
-from voldetail.scene.mesh_distance import mesh_distance, squared_distances, winding_numbers  # noqa: E402
-from voldetail.scene.setup import ProxySetup  # noqa: E402
-from voldetail.scene.shell import Shell, make_shell  # noqa: E402
-from voldetail.scene.shell_plan import DEFAULT_BUDGET, plan_shell  # noqa: E402
+from voldetail.field.shell import Shell, make_shell  # noqa: E402
+from voldetail.field.shell_plan import DEFAULT_BUDGET, plan_shell  # noqa: E402
+from voldetail.geometry import signed_distance  # noqa: E402
+from voldetail.geometry.mesh_distance import mesh_distance, squared_distances, winding_numbers  # noqa: E402
+from voldetail.setup.setup import ProxySetup  # noqa: E402
 
 RNG = np.random.default_rng(5)
 POINTS = RNG.uniform(-1.6, 1.6, (4000, 3))

@@ -6,7 +6,7 @@ from scipy.special import expn
 
 from tests.unit.densities import cloud, points, sampled, slab
 from voldetail.backend import mitsuba
-from voldetail.scene.sky_light import SkyLight, coarsened, icosahedron
+from voldetail.render.sky_light import SkyLight, coarsened, icosahedron
 
 UP = (0.0, 0.0, 1.0)
 

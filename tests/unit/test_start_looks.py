@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from voldetail.fit.space import Space
+from voldetail.fit.warmstart.exposure import SHARES, TONES, exposed
+from voldetail.fit.warmstart.reliefs import SPACE, WINDOW, look, seen_through
 from voldetail.image import to_linear, to_srgb
-from voldetail.start.exposure import SHARES, TONES, exposed
-from voldetail.start.looks import SPACE, WINDOW, look, seen_through
 
 
 def test_look_k_is_the_same_in_whatever_order_it_is_asked_for() -> None:

@@ -16,8 +16,8 @@ from voldetail.fit.candidates import Candidate
 from voldetail.fit.session import State
 from voldetail.fit.space import Kind, Space
 from voldetail.fit.state_file import load_state, save_state
-from voldetail.scene.setup import Setup
-from voldetail.scene.setup_file import setup_from
+from voldetail.setup.file import setup_from
+from voldetail.setup.setup import Setup
 
 SHA = "0123456789abcdef" * 4
 

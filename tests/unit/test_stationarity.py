@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from voldetail.errors import InputError
-from voldetail.texture.stationarity_colour import from_lab, to_lab, usable
-from voldetail.texture.stationarity_local import neighbourhoods, product
-from voldetail.texture.stationarity_measure import BINS, MEASURES, mean_difference, stationarity
-from voldetail.texture.stationarity_steerable import bands, with_bands
+from voldetail.stationary.colour import from_lab, to_lab, usable
+from voldetail.stationary.local import neighbourhoods, product
+from voldetail.stationary.measure import BINS, MEASURES, mean_difference, stationarity
+from voldetail.stationary.steerable import bands, with_bands
 
 
 def noise(side: int = 48, seed: int = 0) -> np.ndarray:

@@ -10,14 +10,14 @@ from scipy import ndimage, stats
 from voldetail.cli.main import main
 from voldetail.errors import InputError
 from voldetail.image import load_photo, save_image, save_png, to_linear
-from voldetail.texture.patchmatch_vote import carry
-from voldetail.texture.stationarity_colour import from_lab, to_lab
-from voldetail.texture.stationarity_measure import MEASURES, stationarity
-from voldetail.texture.stationarize_control import distance, even_sigmas, palette, ramp, spread
-from voldetail.texture.stationarize_levels import levels
-from voldetail.texture.stationarize_pearson import cumulative
-from voldetail.texture.stationarize_project import match_histogram, project
-from voldetail.texture.stationarize_tile import Tile, TileProgress, stationarize
+from voldetail.stationary.colour import from_lab, to_lab
+from voldetail.stationary.control import distance, even_sigmas, palette, ramp, spread
+from voldetail.stationary.levels import levels
+from voldetail.stationary.measure import MEASURES, stationarity
+from voldetail.stationary.patchmatch_vote import carry
+from voldetail.stationary.pearson import cumulative
+from voldetail.stationary.project import match_histogram, project
+from voldetail.stationary.tile import Tile, TileProgress, stationarize
 
 SMALL = 48  # side of a tile
 

@@ -12,12 +12,12 @@ from voldetail.backend import mitsuba
 from voldetail.detail import Detail, StructureTexture, detail_from_text, detail_to_text, summary
 from voldetail.detail.texture_file import load_example, load_texture, save_texture, texture_from_text, texture_to_text
 from voldetail.errors import InputError
+from voldetail.field.albedo import coloured as pigment
+from voldetail.field.albedo import factors_of
 from voldetail.image import to_srgb
 from voldetail.library import recolour
 from voldetail.library.span import spanned
-from voldetail.scene.colour_plugin import colour_dict
-from voldetail.scene.pigment import coloured as pigment
-from voldetail.scene.pigment import factors_of
+from voldetail.render.plugins.colour import colour_dict
 from voldetail.texture import colour_at, picture
 from voldetail.texture.picture import default_float
 from voldetail.texture.structures import MODELS, checked_structure, structure

@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from voldetail.scene.tessellate import split_long_edges
-from voldetail.scene.topology import crosses, edges, signed_volume
+from voldetail.geometry.tessellate import split_long_edges
+from voldetail.geometry.topology import crosses, edges, signed_volume
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

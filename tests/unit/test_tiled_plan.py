@@ -10,8 +10,8 @@ import pytest
 from tests.unit.tiled_objects import SMALL, plan_of, texture_of
 from voldetail.backend import mitsuba
 from voldetail.errors import InputError
-from voldetail.scene.shell_blocks import near_blocks
-from voldetail.scene.shell_plan import DEFAULT_BUDGET
+from voldetail.field.shell_blocks import near_blocks
+from voldetail.field.shell_plan import DEFAULT_BUDGET
 
 mi: ModuleType = mitsuba()
 

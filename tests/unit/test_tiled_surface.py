@@ -23,14 +23,14 @@ mi: ModuleType = mitsuba()  # before Dr.Jit is imported, which would pick an LLV
 import drjit as dr  # noqa: E402
 
 from voldetail.errors import InputError, VoldetailError  # noqa: E402
-from voldetail.scene import tiled_surface  # noqa: E402
-from voldetail.scene.density_grid import DensityGrid  # noqa: E402
-from voldetail.scene.hypertexture import Hypertexture  # noqa: E402
-from voldetail.scene.isosurface import Isosurface, isosurface  # noqa: E402
-from voldetail.scene.setup import ProxySetup  # noqa: E402
-from voldetail.scene.shell_blocks import SIDE, near_blocks  # noqa: E402
-from voldetail.scene.shell_plan import BYTES_A_TILED_VERTEX, plan_shell  # noqa: E402
-from voldetail.scene.tiled_surface import tiled_isosurface  # noqa: E402
+from voldetail.field import tiled_surface  # noqa: E402
+from voldetail.field.hypertexture import Hypertexture  # noqa: E402
+from voldetail.field.shell_blocks import SIDE, near_blocks  # noqa: E402
+from voldetail.field.shell_plan import BYTES_A_TILED_VERTEX, plan_shell  # noqa: E402
+from voldetail.field.tiled_surface import tiled_isosurface  # noqa: E402
+from voldetail.geometry.density_grid import DensityGrid  # noqa: E402
+from voldetail.geometry.isosurface import Isosurface, isosurface  # noqa: E402
+from voldetail.setup.setup import ProxySetup  # noqa: E402
 
 
 def whole(texture: Hypertexture) -> Isosurface:

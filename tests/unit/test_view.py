@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from voldetail.scene.setup import CameraSetup
-from voldetail.scene.view import view_of, whole_view
+from voldetail.setup.setup import CameraSetup
+from voldetail.setup.view import view_of, whole_view
 
 ORTHOGRAPHIC = CameraSetup()
 

@@ -10,14 +10,14 @@ import trimesh
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail, with_values
 from voldetail.errors import InputError
-from voldetail.render import Components, components
-from voldetail.scene import volume as volume_module
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.lights_text import direction_of
-from voldetail.scene.setup import ProxySetup
-from voldetail.scene.shell_plan import OverBudgetError
-from voldetail.scene.view import View
-from voldetail.scene.volume import SOLID_CELLS, Volume, fitting_edge, medium_of, windowed
+from voldetail.field.shell_plan import OverBudgetError
+from voldetail.render import volume as volume_module
+from voldetail.render.unit_components import Components, components
+from voldetail.render.volume import SOLID_CELLS, Volume, fitting_edge, medium_of, windowed
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import direction_of
+from voldetail.setup.setup import ProxySetup
+from voldetail.setup.view import View
 
 VIEW = View(-0.5, 0.5, -0.5, 0.5, 48, 48)
 LAMP = Lamp(direction=direction_of(30, 50))

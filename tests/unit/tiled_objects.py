@@ -8,10 +8,10 @@ from typing import Any
 import trimesh
 
 from voldetail.detail import Detail
-from voldetail.scene.hypertexture import Hypertexture
-from voldetail.scene.setup import ProxySetup
-from voldetail.scene.shell import make_shell
-from voldetail.scene.shell_plan import ShellPlan, plan_shell
+from voldetail.field.hypertexture import Hypertexture
+from voldetail.field.shell import make_shell
+from voldetail.field.shell_plan import ShellPlan, plan_shell
+from voldetail.setup.setup import ProxySetup
 
 SMALL = 240_000_000
 """Bytes: enough for tiles, too little for the grid as a whole."""

@@ -9,9 +9,9 @@ from voldetail.apply.onmesh import KINDS
 from voldetail.apply.volumes import Tell, place, quiet
 from voldetail.detail import Detail
 from voldetail.errors import InputError
-from voldetail.scene.density_grid import DensityGrid
-from voldetail.scene.setup import ProxySetup
-from voldetail.scene.view import whole_view
+from voldetail.geometry.density_grid import DensityGrid
+from voldetail.setup.setup import ProxySetup
+from voldetail.setup.view import whole_view
 
 LEAST_SIDE, MOST_SIDE = 16, 1024
 

@@ -14,11 +14,11 @@ from scipy.ndimage import binary_dilation, binary_erosion
 from voldetail.apply.onmesh import render
 from voldetail.detail import Detail, with_values
 from voldetail.image import resize
-from voldetail.render import components
-from voldetail.scene.build import build, faces_camera
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.lights_text import direction_of
-from voldetail.scene.setup import CameraSetup, Light, PhotoSetup, Setup
+from voldetail.render.build import build, faces_camera
+from voldetail.render.unit_components import components
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import direction_of
+from voldetail.setup.setup import CameraSetup, Light, PhotoSetup, Setup
 
 Picture = NDArray[np.float32]
 

@@ -12,18 +12,18 @@ from numpy.typing import NDArray
 from voldetail.apply.volumes import Progress, Tell, place, quiet, solid_surface, traced_medium, unseen
 from voldetail.detail import Detail
 from voldetail.errors import InputError
-from voldetail.render import components, traced_picture
-from voldetail.scene.environment import environment_emitter
-from voldetail.scene.lamp import Lamp, lamp_of
-from voldetail.scene.lights_text import direction_of
-from voldetail.scene.phong import Diffuse, phong_dict, principled_equivalent, vertex_diffuse
-from voldetail.scene.pigment import patterned
-from voldetail.scene.proxy import make_proxy
-from voldetail.scene.setup import CameraSetup, Light, ProxySetup
-from voldetail.scene.surface import MeshSurface, TracedMesh
-from voldetail.scene.traced import emitters_of
-from voldetail.scene.view import View, whole_view
-from voldetail.scene.volume import Volume
+from voldetail.field.albedo import patterned
+from voldetail.geometry.proxy import make_proxy
+from voldetail.render.environment import environment_emitter
+from voldetail.render.mesh_surface import MeshSurface, TracedMesh
+from voldetail.render.plugins.phong import Diffuse, phong_dict, principled_equivalent, vertex_diffuse
+from voldetail.render.traced import emitters_of
+from voldetail.render.unit_components import components, traced_picture
+from voldetail.render.volume import Volume
+from voldetail.setup.lamp import Lamp, lamp_of
+from voldetail.setup.light import direction_of
+from voldetail.setup.setup import CameraSetup, Light, ProxySetup
+from voldetail.setup.view import View, whole_view
 
 Picture = NDArray[np.float32]
 Colour = tuple[float, float, float]

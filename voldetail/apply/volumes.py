@@ -8,16 +8,16 @@ from typing import Any
 
 from voldetail.detail import Detail
 from voldetail.errors import InputError
-from voldetail.scene.isosurface import isosurface
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.medium import tinted_albedo
-from voldetail.scene.setup import ProxySetup
-from voldetail.scene.shell_plan import OverBudgetError, ShellPlan
-from voldetail.scene.surface import VolumeSurface
-from voldetail.scene.tiled_surface import tiled_isosurface
-from voldetail.scene.traced_medium import TracedVolume
-from voldetail.scene.view import View
-from voldetail.scene.volume import MEDIUM_PIXELS, SOLID_PIXELS, Volume, medium_of, thinnest_edge
+from voldetail.field.medium import tinted_albedo
+from voldetail.field.shell_plan import OverBudgetError, ShellPlan
+from voldetail.field.tiled_surface import tiled_isosurface
+from voldetail.geometry.isosurface import isosurface
+from voldetail.render.mesh_surface import VolumeSurface
+from voldetail.render.traced_medium import TracedVolume
+from voldetail.render.volume import MEDIUM_PIXELS, SOLID_PIXELS, Volume, medium_of, thinnest_edge
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.setup import ProxySetup
+from voldetail.setup.view import View
 
 BUDGET = 2 << 30
 """Bytes that a volume may take; where cells of the wanted size take more, they become larger."""

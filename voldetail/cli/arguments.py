@@ -8,9 +8,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from voldetail.detail.parameters import nearest
-from voldetail.detail.refusal import shown
 from voldetail.errors import InputError
 from voldetail.files import readable
+from voldetail.records.refusal import shown
 
 MOST_ANGLES = 360  # a picture a degree; more is a slip of the pen
 MESH_BYTES = 512 * 2**20  # as much as the reader of meshes takes

@@ -26,7 +26,7 @@ def bake(
 ) -> None:
     """Bake a volumetric detail on a closed shape to a grid of densities from 0 to 1."""
     from voldetail.apply import bake as grid_of
-    from voldetail.scene.density_file import SUFFIX, write_density
+    from voldetail.geometry.density_file import SUFFIX, write_density
 
     if out.suffix.lower() != SUFFIX:
         raise InputError(f"The density file {out} has the suffix {out.suffix or 'none'}; give it the suffix {SUFFIX}.")

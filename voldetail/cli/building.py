@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from voldetail.cli.progress import ProgressView
-    from voldetail.library.build import BuildProgress
+    from voldetail.library.building.build import BuildProgress
 
 
 def teller(view: ProgressView, last: list[BuildProgress], what: str = "") -> Callable[[BuildProgress], None]:

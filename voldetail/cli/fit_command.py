@@ -161,10 +161,10 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
     from voldetail.fit.evenness import warning
     from voldetail.fit.fitter import fit as search
     from voldetail.fit.session import Progress, State
-    from voldetail.fit.starts import Start
     from voldetail.fit.target import Target, load_photo_of
-    from voldetail.scene.setup import Setup
-    from voldetail.start import starts_from
+    from voldetail.fit.warmstart import starts_from
+    from voldetail.fit.warmstart.start import Start
+    from voldetail.setup.setup import Setup
 
     console = remarks()
     picture = load_photo_of(place.setup)

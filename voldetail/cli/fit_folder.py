@@ -12,8 +12,8 @@ from voldetail.cli.outputs import check_folder, make_folder, remove
 from voldetail.detail import save_detail
 from voldetail.errors import InputError
 from voldetail.files import write_text
-from voldetail.scene.setup import Setup
-from voldetail.scene.setup_file import setup_to_toml
+from voldetail.setup.file import setup_to_toml
+from voldetail.setup.setup import Setup
 
 if TYPE_CHECKING:
     from voldetail.fit.fitter import FitResult

@@ -9,12 +9,12 @@ from typing import Any, get_args
 
 from voldetail.cli.arguments import numbers, whole_numbers
 from voldetail.detail.parameters import nearest
-from voldetail.detail.refusal import printable, shown
 from voldetail.errors import InputError
-from voldetail.scene.lights_text import FORMS
-from voldetail.scene.mesh_files import SUFFIXES
-from voldetail.scene.setup import ProxySetup, Setup
-from voldetail.scene.setup_file import load_setup, setup_from_text
+from voldetail.geometry.mesh_files import SUFFIXES
+from voldetail.records.refusal import printable, shown
+from voldetail.setup.file import load_setup, setup_from_text
+from voldetail.setup.light import FORMS
+from voldetail.setup.setup import ProxySetup, Setup
 
 OUTPUT_ROOT = Path("voldetail-out")
 

@@ -15,8 +15,8 @@ from voldetail.detail.parameters import nearest
 from voldetail.errors import InputError
 
 if TYPE_CHECKING:
-    from voldetail.library.build import BuildProgress
-    from voldetail.library.source import Source
+    from voldetail.library.building.build import BuildProgress
+    from voldetail.library.building.source import Source
 
 ALL = "all"
 SAMPLINGS = ("random", "grid")
@@ -56,9 +56,9 @@ def build(
     Ctrl-C keeps what is computed; the same command goes on.
     """
     from voldetail.cli.progress import ProgressView
-    from voldetail.library.build import build as made
-    from voldetail.library.build import check_output, part_of
-    from voldetail.library.plan import Plan
+    from voldetail.library.building.build import build as made
+    from voldetail.library.building.build import check_output, part_of
+    from voldetail.library.building.plan import Plan
     from voldetail.report.facts import duration
 
     if scheduler is not None and workers is not None:
@@ -111,14 +111,14 @@ library_app.command()(info)
 
 def sources_of(what: list[str], sampling: str, seed: int) -> list[Source]:
     """Return the sources that words on the command line stand for: the one place where names become sources."""
-    from voldetail.library.source import StructureSource
+    from voldetail.library.building.source import StructureSource
     from voldetail.texture.structures import MODELS
 
     if sampling not in SAMPLINGS:
         raise InputError(f"--sampling {sampling!r} is not known; allowed: random, grid.")
     if any(word.startswith("relief") for word in what):
-        from voldetail.start import ReliefSource
-        from voldetail.start.choose import elevations_of
+        from voldetail.fit.warmstart import ReliefSource
+        from voldetail.fit.warmstart.choose import elevations_of
 
         return [ReliefSource(elevation, seed) for elevation in elevations_of(what)]
     names: list[str] = []
@@ -133,7 +133,7 @@ def sources_of(what: list[str], sampling: str, seed: int) -> list[Source]:
 
 def _counts(sources: list[Source], count: int | None) -> list[int]:
     if sources[0].measure == "reliefs":
-        from voldetail.start import ENTRIES
+        from voldetail.fit.warmstart import ENTRIES
 
         return [count or ENTRIES] * len(sources)
     grids = [getattr(source, "most", None) for source in sources]

@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from voldetail.cli.console import output, remarks
-from voldetail.detail.refusal import printable, shown
+from voldetail.records.refusal import printable, shown
 
 if TYPE_CHECKING:
     from voldetail.library.layout import SourceRecord
@@ -62,7 +62,7 @@ def size_on_disk(count: float) -> str:
 
 def _current(name: str, record: SourceRecord) -> str:
     """Whether the entries are those that this voldetail would make."""
-    from voldetail.library.source import StructureSource
+    from voldetail.library.building.source import StructureSource
     from voldetail.library.vectors import COMPLETE_SIDE
     from voldetail.texture.structures import MODELS
 
@@ -77,7 +77,7 @@ def _current(name: str, record: SourceRecord) -> str:
 
 
 def _relief_current(record: SourceRecord) -> str:
-    from voldetail.start import ReliefSource
+    from voldetail.fit.warmstart import ReliefSource
 
     elevation = record.definition.get("elevation")
     if not isinstance(elevation, int):

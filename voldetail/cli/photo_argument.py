@@ -9,7 +9,7 @@ from voldetail.errors import InputError
 
 def photo_path(name: str) -> Path:
     """The file of a picture; `skimage:gravel` and the like are photographs that scikit-image ships."""
-    from voldetail.scene.setup import SKIMAGE_PHOTOS, SKIMAGE_PREFIX
+    from voldetail.setup.setup import SKIMAGE_PHOTOS, SKIMAGE_PREFIX
 
     if not name.startswith(SKIMAGE_PREFIX):
         return Path(name)

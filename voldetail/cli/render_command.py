@@ -18,7 +18,7 @@ from voldetail.files import readable
 
 if TYPE_CHECKING:
     from voldetail.detail import Detail
-    from voldetail.scene.setup import CameraSetup
+    from voldetail.setup.setup import CameraSetup
 
 RENDER_LIGHTS = "AZ,EL in degrees, x,y,z or point:x,y,z"
 ENVIRONMENT_BYTES = 2**30
@@ -67,7 +67,7 @@ def render(
     """Render a detail on a shape, under a light or an environment map."""
     from voldetail.apply import render as picture_of
     from voldetail.image import check_suffix, save_image
-    from voldetail.scene.lights_text import parse_light
+    from voldetail.setup.light import parse_light
 
     check_suffix(out)
     check_file(out)
@@ -192,7 +192,7 @@ def _free_folder(folder: Path, force: bool) -> list[Path]:
 
 
 def _camera(fov: float | None) -> CameraSetup | None:
-    from voldetail.scene.setup import CameraSetup
+    from voldetail.setup.setup import CameraSetup
 
     return None if fov is None else CameraSetup(kind="perspective", field_of_view=fov)
 

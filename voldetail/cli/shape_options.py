@@ -29,7 +29,7 @@ def rotation_of(text: str | None) -> tuple[float, float, float]:
 def shape_of(text: str) -> str:
     """Return ``text`` if it is a kind of proxy or a file that can be opened."""
     from voldetail.apply import KINDS
-    from voldetail.scene.mesh_files import SUFFIXES
+    from voldetail.geometry.mesh_files import SUFFIXES
 
     return mesh(text, KINDS, SUFFIXES)
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voldetail.cli.progress import ProgressView
-    from voldetail.texture.stationarize_tile import Tile, TileProgress
+    from voldetail.stationary.tile import Tile, TileProgress
 
 MEASURE_HELP = (
     "What has to be alike everywhere: histogram, moments2, moments3, moments4, mean, steerable; or none, for plain PatchMatch."
@@ -59,9 +59,9 @@ def stationarize(
     """
     from voldetail.cli.progress import ProgressView
     from voldetail.image import check_suffix
-    from voldetail.texture.stationarize_control import palette
-    from voldetail.texture.stationarize_levels import checked_size
-    from voldetail.texture.stationarize_tile import stationarize as make
+    from voldetail.stationary.control import palette
+    from voldetail.stationary.levels import checked_size
+    from voldetail.stationary.tile import stationarize as make
 
     if sigma is not None and levels is not None:
         raise InputError("--sigma and --levels were both given; choose one.")
@@ -107,8 +107,8 @@ def stationarity(
     """Measure how far a texture is from being the same everywhere; 0 is perfectly even."""
     from voldetail.image import check_suffix, resize, resize_mask, save_image
     from voldetail.report.heat import heat as coloured
-    from voldetail.texture.stationarity_measure import MEASURES, check_measure, checked_sigma
-    from voldetail.texture.stationarity_measure import stationarity as measured
+    from voldetail.stationary.measure import MEASURES, check_measure, checked_sigma
+    from voldetail.stationary.measure import stationarity as measured
 
     check_measure(measure)
     if heat is not None:
@@ -196,7 +196,7 @@ def _write(tile: Tile, target: Path) -> None:
 def _write_map(tile: Tile, values: NDArray[np.float32], target: Path, normals: bool) -> None:
     """Write a map's tile with the numbers as they were stored: no sRGB curve comes between."""
     from voldetail.image import save_image, to_linear
-    from voldetail.texture.patchmatch_vote import carry
+    from voldetail.stationary.patchmatch_vote import carry
 
     found = carry(tile.correspondence, values, normals=normals)
     if target.suffix.lower() != ".exr":

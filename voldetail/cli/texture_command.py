@@ -13,9 +13,9 @@ from voldetail.cli.outputs import check_file, check_folder, make_folder, remove
 from voldetail.cli.photo_argument import photo_path
 from voldetail.cli.shape_options import MESH_HELP, shape_of
 from voldetail.cli.threads import use_threads
-from voldetail.detail.refusal import shown
 from voldetail.detail.texture_file import load_example, load_texture, save_texture
 from voldetail.errors import InputError
+from voldetail.records.refusal import shown
 
 MOST_STEPS = 200
 NUMBERS_A_LOBE = 5

@@ -8,9 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from voldetail.detail.json_text import Migration, json_text, migrated, of_format, parsed
 from voldetail.detail.parameters import PARAMETERS, parameter
-from voldetail.detail.reading import read_small_text
 from voldetail.detail.record import (
     DETAIL_VERSION,
     Detail,
@@ -19,9 +17,11 @@ from voldetail.detail.record import (
     Reflectance,
     ReliefParameters,
 )
-from voldetail.detail.refusal import printable, refusal
 from voldetail.errors import InputError
 from voldetail.files import write_text
+from voldetail.records.json_text import Migration, json_text, migrated, of_format, parsed
+from voldetail.records.reading import read_small_text
+from voldetail.records.refusal import printable, refusal
 
 FORMAT = "voldetail.detail"
 _GROUPS = tuple(dict.fromkeys(p.key.split(".")[0] for p in PARAMETERS))

@@ -15,8 +15,8 @@ from pydantic import (
 from voldetail.detail.detail_colour import DetailColour
 from voldetail.detail.parameters import PARAMETERS, declared, limits, parameter
 from voldetail.detail.provenance import NoiseFloor, Provenance, Record
-from voldetail.detail.refusal import refusal
 from voldetail.errors import InputError
+from voldetail.records.refusal import refusal
 
 DETAIL_VERSION: Literal[1] = 1
 LARGEST_SEED = 2**32 - 1  # the lattice hash takes 32-bit words

@@ -11,12 +11,12 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from voldetail.detail.colour import COLOUR_VERSION, ColourTexture
-from voldetail.detail.json_text import Migration, json_text, migrated, of_format, parsed
-from voldetail.detail.reading import read_small_text
-from voldetail.detail.refusal import printable, refusal
 from voldetail.detail.structure_texture import StructureTexture, Texture
 from voldetail.errors import InputError
 from voldetail.files import write_text
+from voldetail.records.json_text import Migration, json_text, migrated, of_format, parsed
+from voldetail.records.reading import read_small_text
+from voldetail.records.refusal import printable, refusal
 
 TEXTURE_FORMAT = "voldetail.texture"
 TEXTURE_MIGRATIONS: dict[int, Migration] = {}

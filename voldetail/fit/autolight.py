@@ -7,8 +7,8 @@ from voldetail.fit.lightguess import FLOOR, LightGuess, guess_light
 from voldetail.fit.target import mask_of
 from voldetail.fit.zone import check_zone
 from voldetail.image import Photo, luminance
-from voldetail.scene.lights_text import FORMS_GIVEN, direction_of
-from voldetail.scene.setup import Light, Setup
+from voldetail.setup.light import FORMS_GIVEN, direction_of
+from voldetail.setup.setup import Light, Setup
 
 
 def resolve_light(setup: Setup, photo: Photo) -> tuple[Setup, LightGuess | None]:

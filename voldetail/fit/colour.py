@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 from voldetail.detail import Detail, DetailColour, Reflectance
 from voldetail.errors import InputError
+from voldetail.field.relief import relief_quantiles
 from voldetail.fit.albedo import albedo_apart
 from voldetail.fit.objective import COVERED, Objective
 from voldetail.image import to_linear, to_srgb
 from voldetail.metric import Descriptor, describe, distance
-from voldetail.render import components
-from voldetail.scene.relief import relief_quantiles
-from voldetail.scene.volume import Volume
+from voldetail.render.unit_components import components
+from voldetail.render.volume import Volume
 from voldetail.texture import CURVE_PROBABILITIES, analyse, picture
 
 DRIVERS: dict[str, tuple[str, ...]] = {

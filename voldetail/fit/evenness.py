@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.errors import InputError
-from voldetail.texture.stationarity_colour import to_lab
-from voldetail.texture.stationarity_measure import stationarity
-from voldetail.texture.stationarize_tile import stationarize
+from voldetail.stationary.colour import to_lab
+from voldetail.stationary.measure import stationarity
+from voldetail.stationary.tile import stationarize
 
 WINDOW = 1 / 6
 """Of the shorter side: what is uneven over less is texture; over more there is too little of it to tell."""

@@ -13,23 +13,23 @@ from voldetail.detail import rounded
 from voldetail.errors import InputError, VoldetailError
 from voldetail.fit.autolight import resolve_light
 from voldetail.fit.colour import ColourChoice, choose_colour
+from voldetail.fit.identifiability import Told, told_of_medium
 from voldetail.fit.interval import AmplitudeInterval, amplitude_interval
 from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.objective import Evaluation, Objective
 from voldetail.fit.plans import Stage, default_plan, paper_plan
 from voldetail.fit.provenance import Findings, signed
 from voldetail.fit.reflectance import colours
+from voldetail.fit.resolvable import space_of
 from voldetail.fit.result import FitResult
 from voldetail.fit.session import Progress, Session, State, Stopped, derived_seed
-from voldetail.fit.shown import space_of
-from voldetail.fit.starts import Start
 from voldetail.fit.target import Target, load_photo_of, make_target
-from voldetail.fit.told import Told, told_of_medium
+from voldetail.fit.warmstart.start import Start
 from voldetail.image import Photo
 from voldetail.metric import METRICS
 from voldetail.metric.anisotropy import anisotropy
-from voldetail.scene.build import build
-from voldetail.scene.setup import SMALLEST_ZONE, Setup
+from voldetail.render.build import build
+from voldetail.setup.setup import SMALLEST_ZONE, Setup
 
 COLOUR_SEEDS = 3
 """Noise seeds that judge the tries of a colour, and as many for the relief's shading."""

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from voldetail.detail import Detail, bounds
 from voldetail.fit.objective import Objective
-from voldetail.scene.lamp import Lamp
-from voldetail.scene.lights_text import angles_of, direction_of
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import angles_of, direction_of
 
 FACTORS = tuple(2.0 ** (step / 2) for step in range(-4, 5))
 """Of the fitted amplitude, a quarter to four times: more than any photo leaves open that has a shadow in it."""

@@ -13,7 +13,7 @@ from voldetail.fit.candidates import Candidate, best_distinct, paper_grid, sampl
 from voldetail.fit.search import GradientDescent
 from voldetail.fit.session import Session, derived_seed
 from voldetail.fit.space import Space
-from voldetail.fit.starts import Start
+from voldetail.fit.warmstart.start import Start
 
 Anisotropy = tuple[float, float]
 

@@ -13,15 +13,15 @@ from voldetail.detail import Detail, NoiseFloor, Provenance, rounded
 from voldetail.errors import InputError
 from voldetail.files import sha256
 from voldetail.fit.colour import ColourChoice
+from voldetail.fit.identifiability import Told
 from voldetail.fit.interval import AmplitudeInterval
 from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.objective import Evaluation
 from voldetail.fit.session import Session, derived_seed
 from voldetail.fit.target import Target
-from voldetail.fit.told import Told
 from voldetail.metric import describe, distance
-from voldetail.scene.lights_text import light_text
-from voldetail.scene.setup import Setup
+from voldetail.setup.light import light_text
+from voldetail.setup.setup import Setup
 
 
 @dataclass(frozen=True)

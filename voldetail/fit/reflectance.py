@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.image import luminance
-from voldetail.render import Components
+from voldetail.render.unit_components import Components
 
 RANKS = 24
 """Groups of pixels by luminance whose means are matched; finer groups add noise, not knowledge (tuned on 12 photos)."""

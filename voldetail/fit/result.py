@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from voldetail.detail import Detail
 from voldetail.fit.colour import ColourChoice
+from voldetail.fit.identifiability import Told
 from voldetail.fit.interval import AmplitudeInterval
 from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.target import Target
-from voldetail.fit.told import Told
 from voldetail.image import luminance
-from voldetail.scene.setup import Setup
+from voldetail.setup.setup import Setup
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,7 @@ from voldetail.fit.ranges import (
     STONES_HANDICAP,
     STRIPED_CELLS_HANDICAP,
 )
-from voldetail.scene.volume import CELL_DEPTH, thinnest_edge
+from voldetail.render.volume import CELL_DEPTH, thinnest_edge
 
 Vector = NDArray[np.float64]
 

@@ -17,15 +17,15 @@ from pydantic import Field, JsonValue, ValidationError
 
 from voldetail import __version__
 from voldetail.detail.provenance import Record, Sha256
-from voldetail.detail.reading import read_small_text
-from voldetail.detail.refusal import printable, refusal, shown
 from voldetail.errors import InputError
 from voldetail.files import sha256, write_text
 from voldetail.fit.candidates import Candidate
 from voldetail.fit.profiles import FOLDS
 from voldetail.fit.session import State
 from voldetail.fit.space import Kind, Space, Vector
-from voldetail.scene.setup import Setup
+from voldetail.records.reading import read_small_text
+from voldetail.records.refusal import printable, refusal, shown
+from voldetail.setup.setup import Setup
 
 FORMAT = "voldetail.state"
 STATE_VERSION: Literal[1] = 1

@@ -14,10 +14,10 @@ from voldetail.fit.evenness import evened, unevenness
 from voldetail.fit.zone import around, check_zone, default_zone
 from voldetail.image import Photo, load_mask, load_photo, luminance, resize, resize_mask
 from voldetail.metric import Descriptor, describe, distance
-from voldetail.scene.build import faces_camera
-from voldetail.scene.lamp import Lamp, lamp_of
-from voldetail.scene.setup import SKIMAGE_PREFIX, Setup
-from voldetail.scene.view import View, Zone, view_of
+from voldetail.render.build import faces_camera
+from voldetail.setup.lamp import Lamp, lamp_of
+from voldetail.setup.setup import SKIMAGE_PREFIX, Setup
+from voldetail.setup.view import View, Zone, view_of
 
 SLOW_SHADING = 0.12
 """Blur, in zone widths, that separates a near light's fall-off from the texture; tuned on the flash photographs of

@@ -8,8 +8,8 @@ from scipy.ndimage import gaussian_filter, uniform_filter
 
 from voldetail.errors import InputError
 from voldetail.image import to_srgb
-from voldetail.scene.setup import SMALLEST_ZONE
-from voldetail.scene.view import Zone
+from voldetail.setup.setup import SMALLEST_ZONE
+from voldetail.setup.view import Zone
 
 FEATURE_PIXELS = 12.0
 """Size in working pixels that the texture's main wavelength should have: enough to shape a bump by, and some sixteen of

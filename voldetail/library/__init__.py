@@ -1,12 +1,12 @@
 """Libraries of procedural textures, searched by a photo's descriptor: parameters retrieved, not optimised (GKHF14)."""
 
 from voldetail.library.answers import Answer, Ranking, picture, rank, structure_map, texture_of
+from voldetail.library.building.source import Source, StructureSource
 from voldetail.library.compare import Match, distance, nearest
 from voldetail.library.entries import Entries, entries, entry, grid_values, random_values
 from voldetail.library.groups import Group, Groups
-from voldetail.library.known import Familiarity, familiarity
+from voldetail.library.novelty import Familiarity, familiarity
 from voldetail.library.query import Query, query
-from voldetail.library.source import Source, StructureSource
 from voldetail.library.store import Library, open_library
 from voldetail.library.tables import Table, table
 from voldetail.library.two_tone import TwoTone, recolour, two_tone

@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from voldetail.errors import InputError
-from voldetail.library.build import BuildProgress, build
-from voldetail.library.plan import Plan
-from voldetail.library.source import Source
+from voldetail.library.building.build import BuildProgress, build
+from voldetail.library.building.plan import Plan
+from voldetail.library.building.source import Source
 from voldetail.library.store import Library, is_library, open_library
 from voldetail.library.vectors import digest
 

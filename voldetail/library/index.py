@@ -19,7 +19,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from voldetail.detail.json_text import parsed
 from voldetail.errors import InputError
 from voldetail.files import atomic, readable
 from voldetail.library.compare import Match, check_query, nearest
@@ -28,6 +27,7 @@ from voldetail.library.layout import step_of
 from voldetail.library.store import Library
 from voldetail.library.tables import BLOCK, OUTLINE, Array, outline, outlined
 from voldetail.library.vectors import swapped
+from voldetail.records.json_text import parsed
 
 FORMAT, VERSION = "voldetail index", 1
 """The version counts changes of the cells' number as well, from which the lengths follow."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from voldetail.library import vectors
-from voldetail.metric import rows
+from voldetail.metric import vector
 
 MeasureName = Literal["structures", "reliefs"]
 
@@ -34,6 +34,6 @@ class Measure:
 MEASURES: dict[str, Measure] = {
     "structures": Measure("structures", lambda: vectors.LENGTH, "float32", vectors.definition, True),
     # Half precision changes a distance by a thousandth at most (tests/unit/test_metric_rows.py).
-    "reliefs": Measure("reliefs", rows.row_length, "float16", rows.definition, False),
+    "reliefs": Measure("reliefs", vector.row_length, "float16", vector.definition, False),
 }
 """The measures by name."""

@@ -16,8 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from voldetail.detail.json_text import parsed
-from voldetail.detail.refusal import printable, refusal, shown
 from voldetail.errors import InputError
 from voldetail.library.groups import Group, Series
 from voldetail.library.layout import (
@@ -34,6 +32,8 @@ from voldetail.library.measures import MEASURES
 from voldetail.library.pieces import Columns, Rows
 from voldetail.library.tables import Table
 from voldetail.library.vectors import digest, weights, weights_definition
+from voldetail.records.json_text import parsed
+from voldetail.records.refusal import printable, refusal, shown
 
 Read = TypeVar("Read", LibraryRecord, SourceRecord)
 

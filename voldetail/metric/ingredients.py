@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 
 from voldetail.metric import (
     gabor,
+    gradient_skew,
     granulometry,
     jets,
-    lean,
+    low_pass,
     magnitudes,
     marginals,
     patches,
     patterns,
     published,
     spectrum,
-    swells,
     tone,
 )
 from voldetail.metric.layers import Layers
@@ -44,8 +44,8 @@ INGREDIENTS: Mapping[str, Ingredient] = MappingProxyType(
         "patterns": patterns,
         "patches": patches,
         "granulometry": granulometry,
-        "swells": swells,
-        "lean": lean,
+        "swells": low_pass,
+        "lean": gradient_skew,
         "jets": jets,
         "tone": tone,
         "gabor": gabor,
@@ -67,5 +67,5 @@ COMBINED: Mapping[str, Mapping[str, float]] = MappingProxyType(
 )  # fmt: skip
 """Weight of each part of the default metric, adding up to 1. Tuned on the photographs of results/metric for which
 pairs should be nearer, by a random search rounded by hand, with at least a sixth for granulometry and a share for the
-swells, which fits need and the decoys there do not test. Left out as they added nothing: tone, patches, jets and the
-coarsest level of the magnitudes. Left out as fits, whose light is given, have it right already: lean."""
+low_pass, which fits need and the decoys there do not test. Left out as they added nothing: tone, patches, jets and the
+coarsest level of the magnitudes. Left out as fits, whose light is given, have it right already: gradient_skew."""

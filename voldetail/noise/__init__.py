@@ -2,12 +2,12 @@
 
 from voldetail.noise.cells import cell_value, number_of, specks
 from voldetail.noise.curve import evaluate_curve
-from voldetail.noise.gabor import relief_function
-from voldetail.noise.grains import GrainShape
+from voldetail.noise.gabor import KERNEL_RADIUS, NoiseSettings, single_octave
 from voldetail.noise.lattice import cell_hash, feature_point, nearest_points, search_table
 from voldetail.noise.moments import moments
-from voldetail.noise.octave import KERNEL_RADIUS, NoiseSettings, single_octave
 from voldetail.noise.plates import PlateShape, plate_numbers
+from voldetail.noise.relief import relief_function
+from voldetail.noise.stones import GrainShape
 
 __all__ = [
     "KERNEL_RADIUS",

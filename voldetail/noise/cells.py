@@ -6,10 +6,10 @@ from typing import Any
 
 import drjit as dr
 
-from voldetail.noise.gabor import frame
+from voldetail.noise.gabor import NoiseSettings, single_octave
 from voldetail.noise.lattice import FOURTH_POINT_RADIUS, Neighbourhood, nearest_points, unit
 from voldetail.noise.moments import moments
-from voldetail.noise.octave import NoiseSettings, single_octave
+from voldetail.noise.relief import frame
 
 CELL_SALT = 0x7F4A7C15
 """Multiplies the spare hash word, so that a cell's number is independent of its stripes; odd, else arbitrary."""

@@ -10,7 +10,7 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from voldetail.noise.octave import NoiseSettings, single_octave
+from voldetail.noise.gabor import NoiseSettings, single_octave
 
 MOMENT_SAMPLES = 4096
 MOMENT_SALT = 0x9E3779B9

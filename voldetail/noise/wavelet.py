@@ -26,8 +26,8 @@ import drjit as dr
 import numpy as np
 from numpy.typing import NDArray
 
+from voldetail.noise.gabor import TURN
 from voldetail.noise.lattice import cell_hash
-from voldetail.noise.octave import TURN
 from voldetail.noise.wavelet_spectrum import PHASE
 from voldetail.noise.wavelet_tile import CHANNELS, SIDES, wavelet_tile
 

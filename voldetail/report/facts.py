@@ -11,7 +11,7 @@ from voldetail.report.verdict import number
 if TYPE_CHECKING:
     from voldetail.fit.fitter import FitResult
     from voldetail.fit.interval import AmplitudeInterval
-    from voldetail.scene.setup import Light, Setup
+    from voldetail.setup.setup import Light, Setup
 
 _SIDES = ("the right", "the upper right", "above", "the upper left", "the left", "the lower left", "below",
           "the lower right")  # fmt: skip

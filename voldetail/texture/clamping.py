@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from voldetail.noise.octave import TURN
+from voldetail.noise.gabor import TURN
 from voldetail.noise.wavelet_spectrum import passed_slice, passed_variance
 
 SMALLEST_LOG, LARGEST_LOG = -4.0, 6.0

@@ -15,10 +15,10 @@ from typing import Any
 
 import drjit as dr
 
-from voldetail.detail.refusal import shown
 from voldetail.detail.structure_texture import StructureTexture
 from voldetail.errors import InputError
 from voldetail.noise.triplanar import PLANES
+from voldetail.records.refusal import shown
 from voldetail.texture.decoding import decoded
 from voldetail.texture.structures.model import StructureModel
 from voldetail.texture.structures.models import MODELS

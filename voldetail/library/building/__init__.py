@@ -1,0 +1,1 @@
+"""How libraries are made: sources, plans, workers, staging and finishing."""

@@ -1,0 +1,1 @@
+"""The renderer's plugins: the fitted reflectance and textures of colour."""

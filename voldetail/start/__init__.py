@@ -1,6 +1,0 @@
-"""Where a fit may start: reliefs rendered beforehand, whose pictures are compared with the photo's in a moment."""
-
-from voldetail.start.choose import starts_from
-from voldetail.start.source import ELEVATIONS, ENTRIES, ReliefSource
-
-__all__ = ["ELEVATIONS", "ENTRIES", "ReliefSource", "starts_from"]
