@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from from_code.markdown import code, plain, table
 from typer.main import get_command
 
+from from_code.markdown import code, plain, table
 from voldetail.cli.app import app
 
 _TYPES = {"str": "TEXT", "int": "NUMBER", "float": "NUMBER", "Path": "FILE"}
+_OLDER_TYPES = {"text": "str", "integer": "int", "integer range": "int", "float range": "float", "path": "Path"}
 OTHER_OPTIONS = "Options"
 
 
@@ -58,11 +59,11 @@ def _names(option: Any) -> str:
 
 
 def _kind(option: Any) -> str:
-    """Return the name of the type of value: typer's own, before and after it had parameters of its own."""
+    """Return the name of the type of value, which typer keeps in one place since it has parameters of its own."""
     descriptor = getattr(option, "type_descriptor", None)
     if descriptor is not None:
         return str(getattr(descriptor.annotation, "__name__", descriptor.annotation))
-    return {"text": "str", "integer": "int", "integer range": "int", "float range": "float"}.get(option.type.name, option.type.name)
+    return _OLDER_TYPES.get(option.type.name, str(option.type.name))
 
 
 def _value(option: Any) -> str:
@@ -73,11 +74,7 @@ def _allowed(option: Any) -> str:
     """Return what an option takes: its value's name and bounds, and its default."""
     if option.is_flag:
         return ""
-    limits = option if hasattr(option, "min") else option.type
-    least, most = getattr(limits, "min", None), getattr(limits, "max", None)
-    words = code(_value(option))
-    if least is not None or most is not None:
-        words += f" {least:g} to {most:g}" if None not in (least, most) else f" from {least:g}" if most is None else f" to {most:g}"
+    words = code(_value(option)) + _bounds(option)
     if option.multiple:
         words += ", repeatable"
     if option.required:
@@ -85,3 +82,13 @@ def _allowed(option: Any) -> str:
     elif option.default not in (None, [], ()):
         words += f", default {code(str(option.default))}"
     return words
+
+
+def _bounds(option: Any) -> str:
+    limits = option if hasattr(option, "min") else option.type
+    least, most = getattr(limits, "min", None), getattr(limits, "max", None)
+    if least is None and most is None:
+        return ""
+    if least is None or most is None:
+        return f" from {least:.12g}" if most is None else f" to {most:.12g}"
+    return f" {least:.12g} to {most:.12g}"

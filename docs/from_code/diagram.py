@@ -34,7 +34,8 @@ def diagram() -> str:
     return (
         f'<svg class="rooms" viewBox="0 0 {WIDTH} {total}" width="100%" role="img" xmlns="http://www.w3.org/2000/svg">'
         f"<title>The rooms of voldetail; each uses those that its lines lead down to</title><style>{_STYLE}</style>"
-        + "".join(parts) + "</svg>\n"
+        + "".join(parts)
+        + "</svg>\n"
     )
 
 
@@ -69,7 +70,8 @@ def _places(layers: list[list[str]], chains: list[list[str]]) -> dict[str, tuple
             wished = {name: sum(x[t] for t in ties[name]) / len(ties[name]) if ties[name] else x[name] for name in layer}
             layer.sort(key=lambda name: wished[name])
             _spread(layer, wished, x)
-    return {name: (x[name], MARGIN + LAYER * k + BOX[1] / 2) for k, layer in enumerate(layers) for name in layer}
+    aside = WIDTH / 2 - (min(x.values()) + max(x.values())) / 2
+    return {name: (x[name] + aside, MARGIN + LAYER * k + BOX[1] / 2) for k, layer in enumerate(layers) for name in layer}
 
 
 def _spread(layer: list[str], wished: dict[str, float], x: dict[str, float]) -> None:

@@ -6,13 +6,14 @@ from typing import Any, ClassVar
 
 from docutils import nodes
 from docutils.statemachine import StringList
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
 from from_code.commands import command_page
 from from_code.diagram import diagram
 from from_code.papers import other_papers_page, papers_page
 from from_code.records import layout_page, parameter_page, record_page
 from from_code.rooms import rooms_page
-from sphinx.application import Sphinx
-from sphinx.util.docutils import SphinxDirective
 
 
 class Written(SphinxDirective):

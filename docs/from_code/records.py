@@ -6,10 +6,10 @@ import importlib
 import json
 from typing import Any
 
-from from_code.markdown import code, plain, table
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from from_code.markdown import code, plain, table
 from voldetail.detail import PARAMETERS, Detail, detail_to_text
 from voldetail.records import refusal
 

@@ -52,8 +52,8 @@ def rooms_page() -> str:
     all_rooms = rooms()
     uses = downward(all_rooms)
     order = sorted(all_rooms.values(), key=lambda r: (-height(r.name, uses), r.name))
-    rows = [(code(r.name), plain(r.sentence), ", ".join(map(code, sorted(r.uses))), f"{r.files}, {r.lines}") for r in order]
-    return table(["room", "what it holds", "uses", "files, lines"], rows)
+    rows = [(code(r.name), plain(r.sentence), ", ".join(map(code, sorted(r.uses))), str(r.files), str(r.lines)) for r in order]
+    return table(["room", "what it holds", "uses", "files", "lines"], rows)
 
 
 def height(name: str, uses: dict[str, set[str]]) -> int:
