@@ -11,6 +11,7 @@ from sphinx.util.docutils import SphinxDirective
 
 from from_code.commands import command_page
 from from_code.diagram import diagram
+from from_code.interface import interface_page, short_arrays
 from from_code.papers import other_papers_page, papers_page
 from from_code.records import layout_page, parameter_page, record_page
 from from_code.rooms import rooms_page
@@ -27,6 +28,7 @@ class Written(SphinxDirective):
         "parameters": lambda _: parameter_page(),
         "detail-layout": lambda _: layout_page(),
         "rooms": lambda _: rooms_page(),
+        "interface": interface_page,
         "papers": papers_page,
         "other-papers": lambda _: other_papers_page(),
     }
@@ -45,9 +47,14 @@ class Diagram(SphinxDirective):
         return [nodes.raw("", diagram(), format="html")]
 
 
+def _readable(app: Sphinx, what: str, name: str, found: Any, options: Any, signature: str, returned: str) -> tuple[Any, Any]:
+    return signature and short_arrays(signature), returned and short_arrays(returned)
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Make the directives known to Sphinx."""
     for name in Written.makers:
         app.add_directive(name, Written)
     app.add_directive("rooms-diagram", Diagram)
+    app.connect("autodoc-process-signature", _readable)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 _SPECIAL = re.compile(r"([\\|*_<>\[\]{}$`#~])")
-_OPTION = re.compile(r"(?<![\w-])(--?[A-Za-z][\w-]*)")
+_OPTION = re.compile(r"(?<![\w'-])(--?[A-Za-z][\w-]*)")
 
 
 def plain(text: str) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from from_code import bibliography, commands, diagram, papers, records, rooms
+from from_code import bibliography, commands, diagram, interface, papers, records, rooms
 from voldetail import __version__, api
 from voldetail.detail import PARAMETERS
 
@@ -108,6 +108,17 @@ def test_links_of_readme_and_notices_lead_somewhere() -> None:
     for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md"):
         text = (ROOT / name).read_text(encoding="utf-8")
         assert [link for link in re.findall(r"\]\(([^)#:]+)\)", text) if not (ROOT / link).exists()] == []
+
+
+def test_the_interface_is_whole() -> None:
+    kinds = {interface.kind_of(name) for name in api.__all__}
+    assert set(arguments_of("interface")) == kinds
+    assert all(f"voldetail.api.{name}\n" in interface.interface_page(interface.kind_of(name)) for name in api.__all__)
+
+
+def test_arrays_in_signatures_are_as_in_the_source() -> None:
+    long = "(a: ~numpy.ndarray[tuple[~typing.Any, ...], ~numpy.dtype[~numpy.float32]])"
+    assert interface.short_arrays(long) == "(a: NDArray[float32])"
 
 
 def test_every_public_name_of_the_interface_has_a_docstring() -> None:
