@@ -17,7 +17,8 @@ OTHER_OPTIONS = "Options"
 
 def names(command: Any = None, before: str = "") -> Iterator[str]:
     """Yield every command's words, e.g. "fit" and "texture fit"."""
-    for name, below in (command or get_command(app)).commands.items():
+    group: Any = command or get_command(app)
+    for name, below in group.commands.items():
         if hasattr(below, "commands"):
             yield from names(below, f"{before}{name} ")
         elif not below.hidden:
@@ -26,7 +27,7 @@ def names(command: Any = None, before: str = "") -> Iterator[str]:
 
 def command_page(words: str) -> str:
     """Return the Markdown of the command that ``words`` name; "" is voldetail itself with the options of all commands."""
-    found = get_command(app)
+    found: Any = get_command(app)
     for word in words.split():
         found = found.commands[word]
     given = [p for p in found.params if not getattr(p, "hidden", False)]

@@ -99,7 +99,7 @@ def _paper_before(before: str, own: str) -> str:
 def _places(kind: str, numbers: str) -> list[str]:
     """Return "equations", "1 to 3 and 5" as "eq. 1", "eq. 2", "eq. 3", "eq. 5"."""
     word = "eq." if kind.lower().startswith("eq") else kind.lower().removesuffix("s")
-    found = []
+    found: list[str] = []
     for part in re.split(r", (?:and )?| and ", numbers):
         first, _, last = part.partition(" to ")
         found += [first] if not last else [str(k) for k in range(int(first), int(last) + 1)]
