@@ -15,7 +15,8 @@ from voldetail.fit.zone import around, check_zone, default_zone
 from voldetail.image import Photo, load_mask, load_photo, luminance, resize, resize_mask
 from voldetail.metric import Descriptor, describe, distance
 from voldetail.render.build import faces_camera
-from voldetail.setup.lamp import Lamp, lamp_of
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import lamp_of
 from voldetail.setup.setup import SKIMAGE_PREFIX, Setup
 from voldetail.setup.view import View, Zone, view_of
 
@@ -100,13 +101,13 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
     if not used.any():
         raise InputError("The mask leaves nothing of the zone to compare: use a larger mask or another --zone.")
     lamp = lamp_of(setup.light, luminance(photo.pixels))
-    if lamp.position is not None and faces_camera(setup):
+    if lamp.near and faces_camera(setup):
         view = view_of(setup.camera, (rows, columns), zone, setup.photo.resolution)
         pixels = _with_falloff_of(lamp, pixels, used, view)
     uneven = unevenness(pixels, used) if faces_camera(setup) and not setup.medium else None
     if setup.photo.stationarize:
         source, seen = pixels, used
-        if setup.photo.zone is None and lamp.position is None:
+        if setup.photo.zone is None and not lamp.near:
             # A zone that the user drew says what is meant; else there is more of the surface beside it.
             x, y, w, h = around(zone, (rows, columns), REACH)
             whole = (round(h * factor), round(w * factor))
