@@ -53,9 +53,9 @@ from voldetail.setup.light import Light, parse_light
 from voldetail.setup.setup import Setup
 from voldetail.setup.view import Zone, view_of
 
-METRICS = ("combined", "patches", "jets", "lean", "published")
-"""The first is what was minimised; patches, jets and lean take no part in it, and lean alone sees the lit side; the last is
-GD10's own."""
+METRICS = ("combined", "patches", "jets", "gradient-skew", "published")
+"""The first is what was minimised; patches, jets and gradient-skew take no part in it, and gradient-skew alone sees the lit
+side; the last is GD10's own."""
 
 COLUMNS = (*METRICS, "side")
 """`side` is no distance between textures: how far apart they look lit from, the length of a difference of vectors."""

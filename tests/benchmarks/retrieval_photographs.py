@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from tests.benchmarks.retrieval_models import ENTRIES, RESULTS, library
 from tests.benchmarks.retrieval_photos import Sought, ready, there
 from voldetail.image import luminance, to_srgb
-from voldetail.library import Answer, Familiarity, Query, familiarity, picture, rank
+from voldetail.library import Answer, Novelty, Query, novelty_of, picture, rank
 from voldetail.library.groups import Groups
 from voldetail.metric import describe, distance
 
@@ -80,7 +80,7 @@ def main() -> None:
         asked = ready(sought)
         found = answers(groups, asked)
         looks = judged(asked, found[:SHOWN])
-        familiar = familiarity(groups[found[0].model], found[0])
+        familiar = novelty_of(groups[found[0].model], found[0])
         assert familiar is not None
         report[sought.name] = record(sought, asked, found, looks, familiar)
         rows.append((sought, asked, found[:SHOWN], familiar.known))
@@ -94,7 +94,7 @@ def main() -> None:
     (RESULTS / "photographs.json").write_text(json.dumps(report, indent=1) + "\n")
 
 
-def record(sought: Sought, asked: Query, found: list[Answer], looks: list[float], familiar: Familiarity) -> dict[str, Any]:
+def record(sought: Sought, asked: Query, found: list[Answer], looks: list[float], familiar: Novelty) -> dict[str, Any]:
     """What the JSON file says of a photograph."""
     return {
         "about": sought.about, "outside": sought.outside, "explained": round(asked.tones.explained, 3),

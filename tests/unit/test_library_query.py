@@ -7,7 +7,7 @@ import pytest
 
 from voldetail.errors import InputError
 from voldetail.image import resize, to_srgb
-from voldetail.library import distance, entries, familiarity, picture, query, rank, recolour, table, texture_of, vector_of
+from voldetail.library import distance, entries, novelty_of, picture, query, rank, recolour, table, texture_of, vector_of
 from voldetail.library.groups import Group
 from voldetail.library.query import ALL_SCALES_SIDE
 from voldetail.library.span import span_of, spanned
@@ -147,7 +147,7 @@ def test_a_stranger_is_told_from_a_picture_of_the_model(groups: dict[str, Group]
     told = []
     for s in (own, noise):
         best = rank({"brick": groups["brick"]}, vector_of(s), 1).answers[0]
-        found = familiarity(groups["brick"], best, side=SIDE)
+        found = novelty_of(groups["brick"], best, side=SIDE)
         assert found is not None
         assert found.distance == best.distance
         assert found.known == (not found.sentence)
@@ -157,10 +157,10 @@ def test_a_stranger_is_told_from_a_picture_of_the_model(groups: dict[str, Group]
     assert f"{told[1].distance:.3f} away" in told[1].sentence
     # The yardstick is of the model and the library, and not of what is asked for.
     assert told[0].farthest == told[1].farthest
-    assert familiarity(groups["brick"], replace(best, model="relief")) is None
+    assert novelty_of(groups["brick"], replace(best, model="relief")) is None
     # Three entries are a coarser library, in which pictures are farther from their nearest.
     few = replace(groups["brick"], values=groups["brick"].values[:3], table=table(groups["brick"].table.vectors[:3]))
-    coarse = familiarity(few, best, side=SIDE)
+    coarse = novelty_of(few, best, side=SIDE)
     assert coarse is not None
     assert coarse.farthest > told[0].farthest
 

@@ -18,7 +18,7 @@ from voldetail.apply.gallery import Gallery
 from voldetail.detail import Detail, NoiseFloor
 from voldetail.fit.colour import ColourChoice
 from voldetail.fit.fitter import FitResult
-from voldetail.fit.identifiability import Told
+from voldetail.fit.identifiability import Identifiability
 from voldetail.fit.interval import AmplitudeInterval
 from voldetail.image import Photo
 from voldetail.report import write_report
@@ -237,8 +237,9 @@ def test_an_amplitude_without_an_interval_says_why() -> None:
 
 def test_a_medium_is_told_number_by_number() -> None:
     told = (
-        Told("medium.extinction", 12.0, 8.0, 48.0, 3.0, 48.0), Told("medium.thickness", 0.2, 0.1, 0.3, 0.05, 0.8),
-        Told("medium.albedo", 0.99, 0.2, 1.0, 0.2, 1.0),
+        Identifiability("medium.extinction", 12.0, 8.0, 48.0, 3.0, 48.0),
+        Identifiability("medium.thickness", 0.2, 0.1, 0.3, 0.05, 0.8),
+        Identifiability("medium.albedo", 0.99, 0.2, 1.0, 0.2, 1.0),
     )
     words = medium_words(result(told=told))
     assert words == (

@@ -235,7 +235,7 @@ def _tell(folder: Path, result: FitResult) -> None:
     # On a terminal a sentence is wrapped between words; in a file it stays one line.
     wrap = not console.is_terminal
     console.print(verdict(result.distance, result.detail.noise_floor).sentence, markup=False, soft_wrap=wrap)
-    told = f"Of the medium: {medium_words(result)}" if result.told else f"Amplitude {amplitude_words(result)}"
+    told = f"Of the medium: {medium_words(result)}" if result.identifiability else f"Amplitude {amplitude_words(result)}"
     console.print(f"{told}.", markup=False, soft_wrap=wrap)
     spent = f"{result.evaluations} pictures compared in {duration(result.seconds)}"
     console.print(f"{spent}; {result.status}.", markup=False, soft_wrap=wrap)

@@ -19,7 +19,7 @@ from voldetail.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from voldetail.library import Answer, Familiarity, Query, Ranking
+    from voldetail.library import Answer, Novelty, Query, Ranking
     from voldetail.library.groups import Groups
     from voldetail.library.index import Index
 
@@ -61,7 +61,7 @@ def retrieve(
     Nothing is optimised: the photo's descriptor is compared with those of a library. A structure is of the same size as the
     photo's only where the photo is compared at a size that the library knows; see --scale.
     """
-    from voldetail.library import familiarity, rank
+    from voldetail.library import novelty_of, rank
 
     for path, suffix in ((sheet, ".png"), (as_json, ".json"), (texture, ".json")):
         if path is not None:
@@ -76,7 +76,7 @@ def retrieve(
     )  # fmt: skip
     first = found.answers[0]
     with remarks().status(f"comparing with other pictures of {first.model}"):
-        familiar = familiarity(groups[first.model], first, rotations=rotation, swap=swap)
+        familiar = novelty_of(groups[first.model], first, rotations=rotation, swap=swap)
     said = _remarks(asked, familiar)
     _print(found, asked, said)
     if as_json is not None:
@@ -124,7 +124,7 @@ def _indexes(library: Path | None) -> dict[str, Index]:
 
 def _chosen(groups: Groups, names: list[str] | None) -> Groups:
     """The groups that are named; all where none is."""
-    from voldetail.detail.parameters import nearest
+    from voldetail.records.nearest import nearest
 
     names = [name.replace("-", " ") for name in names or []]  # as library build takes the name "cellular grid"
     for name in names:
@@ -165,7 +165,7 @@ def _print(found: Ranking, asked: Query, said: list[str]) -> None:
         remarks().print(sentence, markup=False, soft_wrap=True)
 
 
-def _remarks(asked: Query, familiar: Familiarity | None) -> list[str]:
+def _remarks(asked: Query, familiar: Novelty | None) -> list[str]:
     """What a reader of the answers has to know, a sentence each."""
     said = [familiar.sentence if familiar else "", asked.tones.poor]
     if asked.missing:
@@ -188,7 +188,7 @@ def _table(rows: Sequence[tuple[str, Answer]], heading: str) -> Table:
 
 
 def _record(
-    photo: str, asked: Query, found: Ranking, familiar: Familiarity | None, said: list[str]
+    photo: str, asked: Query, found: Ranking, familiar: Novelty | None, said: list[str]
 ) -> dict[str, Any]:
     """The answers as what JSON holds."""
     rows, columns = asked.photo.shape[:2]

@@ -2,24 +2,24 @@
 
 from voldetail.detail.colour import ColourChannel, ColourTexture, Lobe
 from voldetail.detail.curves import MONOTONE_CURVES, START_CURVES
+from voldetail.detail.declaration import Parameter
 from voldetail.detail.detail_colour import DetailColour
 from voldetail.detail.file import detail_from_text, detail_to_text, load_detail, rounded, save_detail, schema
-from voldetail.detail.parameters import PARAMETERS, Parameter, bounds, help_text, parameter
-from voldetail.detail.record import (
+from voldetail.detail.parameters import (
     ALLOWED_NEIGHBOURS,
-    LARGEST_SEED,
     PAPER_NEIGHBOURS,
-    Detail,
+    PARAMETERS,
     MediumParameters,
-    NoiseFloor,
     NoiseParameters,
-    Provenance,
     Reflectance,
     ReliefParameters,
-    detail_from,
-    values_of,
-    with_values,
+    bounds,
+    help_text,
+    parameter,
+    parameters_of,
 )
+from voldetail.detail.provenance import NoiseFloor, Provenance
+from voldetail.detail.record import LARGEST_SEED, Detail, detail_from, values_of, with_values
 from voldetail.detail.structure_texture import StructureTexture, Texture
 from voldetail.detail.words import describe_in_words, summary
 
@@ -52,6 +52,7 @@ __all__ = [
     "help_text",
     "load_detail",
     "parameter",
+    "parameters_of",
     "rounded",
     "save_detail",
     "schema",

@@ -32,7 +32,7 @@ DRIVERS: dict[str, tuple[str, ...]] = {
 
 NAMES = {"noise": "by-example", "height": "height", "hollow": "height", "cell": "cell"}
 
-HANDICAPS = {"height": 1.06, "hollow": 1.06, "cell": 1.06}
+PENALTIES = {"height": 1.06, "hollow": 1.06, "cell": 1.06}
 """Factors on the distances by which a colour that goes with the relief has to pay for itself. Without them it won by a few
 percent on most photographs, and was further from those under other lights than colour by example was (tuned on two of the
 captures of ../shared/data/multilight)."""
@@ -121,7 +121,7 @@ def choose_colour(
         found = {driver: _far(objective, made, judge, seeds) for driver, made in tries.items()}
     except InputError:  # too little is seen of it to be compared
         return ColourChoice(detail, "none", {}, plain)
-    best = min(found, key=lambda driver: found[driver] * HANDICAPS.get(driver, 1.0))
+    best = min(found, key=lambda driver: found[driver] * PENALTIES.get(driver, 1.0))
     return ColourChoice(tries[best], NAMES.get(best, "none"), found, _colours(objective, tries[best])[0])
 
 

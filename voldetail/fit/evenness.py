@@ -2,7 +2,7 @@
 
     u = s / d
 
-s: the measure of stationarity by local histograms (texture.stationarity_measure, eq. 1 and 3), windows a sixth of the shorter
+s: the measure of stationarity by local histograms (stationary.measure, eq. 1 and 3), windows a sixth of the shorter
 side; d: the mean difference of two of its pixels, in CIE L*a*b*. 0 is perfectly even, 1 as uneven as a photo of two halves
 that share no colour.
 """

@@ -13,7 +13,7 @@ from voldetail.detail import rounded
 from voldetail.errors import InputError, VoldetailError
 from voldetail.fit.autolight import resolve_light
 from voldetail.fit.colour import ColourChoice, choose_colour
-from voldetail.fit.identifiability import Told, told_of_medium
+from voldetail.fit.identifiability import Identifiability, medium_identifiability
 from voldetail.fit.interval import AmplitudeInterval, amplitude_interval
 from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.objective import Evaluation, Objective
@@ -37,7 +37,7 @@ COLOUR_SEEDS = 3
 INTERVAL_SEEDS = 2
 """Noise seeds for the intervals of numbers."""
 
-FEWEST_TOLD = 500
+FEWEST_FOR_LIBRARY = 500
 """Evaluations below which a library is not made for a fit: that takes longer than the fit."""
 
 FINALISTS = 3
@@ -108,7 +108,7 @@ def takes_starts(setup: Setup) -> bool:
     """Whether a fit of ``setup`` is told where to start: the default one of a relief, unless it is to be a short one."""
     settings = setup.fit
     usual = setup.mode == "displacement" and settings.solver == "default" and settings.metric == "combined"
-    short = settings.library == "auto" and settings.evaluations is not None and settings.evaluations < FEWEST_TOLD
+    short = settings.library == "auto" and settings.evaluations is not None and settings.evaluations < FEWEST_FOR_LIBRARY
     return usual and not short and settings.library != "none"
 
 
@@ -189,12 +189,13 @@ def _heights(setup: Setup, session: Session, final: Evaluation) -> AmplitudeInte
         return None
 
 
-def _told(session: Session, final: Evaluation) -> tuple[Told, ...]:
+def _told(session: Session, final: Evaluation) -> tuple[Identifiability, ...]:
     """Return what the photo tells of a medium, at the coarse objective's resolution: there are a hundred pictures to make."""
     if final.detail.medium is None:
         return ()
     try:
-        return told_of_medium(session.coarse, final.detail, [session.unseen_seed(index) for index in range(INTERVAL_SEEDS)])
+        seeds = [session.unseen_seed(index) for index in range(INTERVAL_SEEDS)]
+        return medium_identifiability(session.coarse, final.detail, seeds)
     except KeyboardInterrupt:
         return ()
 

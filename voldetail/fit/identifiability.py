@@ -24,7 +24,7 @@ NUMBERS = ("relief.amplitude", "medium.thickness", "medium.exponent", "medium.ex
 
 
 @dataclass(frozen=True)
-class Told:
+class Identifiability:
     """One number: its key and value, and between which values pictures are nearly as near to the photo as the best one's.
 
     least, most: of what was tried; an interval that ends there is open.
@@ -43,13 +43,13 @@ class Told:
         return self.low <= self.least and self.high >= self.most
 
 
-def told_of_medium(objective: Objective, detail: Detail, seeds: Sequence[int]) -> tuple[Told, ...]:
+def medium_identifiability(objective: Objective, detail: Detail, seeds: Sequence[int]) -> tuple[Identifiability, ...]:
     """Return what the photo of ``objective`` tells of each number of the medium ``detail``, by pictures under ``seeds``."""
     other = Objective(objective.target, objective.surface, specular=False, reduced=objective.reduced)
     return tuple(_told(other, detail, key, seeds) for key in NUMBERS)
 
 
-def _told(objective: Objective, detail: Detail, key: str, seeds: Sequence[int]) -> Told:
+def _told(objective: Objective, detail: Detail, key: str, seeds: Sequence[int]) -> Identifiability:
     value = float(values_of(detail)[key])
     low, high = bounds(key)
     # Factors are equally far apart on a logarithmic scale.
@@ -66,4 +66,4 @@ def _told(objective: Objective, detail: Detail, key: str, seeds: Sequence[int]) 
     # Rounding of the logarithm is not to open or close an end.
     least, most = tried[0], tried[-1]
     first, last = (least if ends[0] <= least * (1 + 1e-9) else ends[0]), (most if ends[1] >= most * (1 - 1e-9) else ends[1])
-    return Told(key, value, min(first, value), max(last, value), least, most)
+    return Identifiability(key, value, min(first, value), max(last, value), least, most)

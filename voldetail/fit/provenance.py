@@ -13,7 +13,7 @@ from voldetail.detail import Detail, NoiseFloor, Provenance, rounded
 from voldetail.errors import InputError
 from voldetail.files import sha256
 from voldetail.fit.colour import ColourChoice
-from voldetail.fit.identifiability import Told
+from voldetail.fit.identifiability import Identifiability
 from voldetail.fit.interval import AmplitudeInterval
 from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.objective import Evaluation
@@ -31,7 +31,7 @@ class Findings:
     status: str
     light_guess: LightGuess | None
     heights: AmplitudeInterval | None
-    told: tuple[Told, ...]
+    told: tuple[Identifiability, ...]
     background: tuple[float, float, float]
     colour: ColourChoice | None = None
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from voldetail.detail import Detail
 from voldetail.fit.colour import ColourChoice
-from voldetail.fit.identifiability import Told
+from voldetail.fit.identifiability import Identifiability
 from voldetail.fit.interval import AmplitudeInterval
 from voldetail.fit.lightguess import LightGuess
 from voldetail.fit.target import Target
@@ -42,7 +42,7 @@ class FitResult:
     interrupted: bool
     light_guess: LightGuess | None = None
     heights: AmplitudeInterval | None = None
-    told: tuple[Told, ...] = ()
+    told: tuple[Identifiability, ...] = ()
     colour: ColourChoice | None = None
 
     @property

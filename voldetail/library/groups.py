@@ -36,7 +36,7 @@ Groups = Mapping[str, Group]
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """Reliefs under one light: its name, the names of their numbers, values (N, numbers), rows (N, L) of `metric.rows`.
+    """Reliefs under one light: its name, the names of their numbers, values (N, numbers), rows (N, L) of `metric.vector`.
 
     seed: of all that is random in them. definition: what else decides them, as their source says.
     """

@@ -1,7 +1,7 @@
 """What an entry's picture is described with, of which there are two: one measure for all entries of a library.
 
     structures   the vector of GKHF14 section 4, see `vectors`: two-tone maps, compared in any turn
-    reliefs      the project's own metric, see `metric.rows`: pictures of reliefs under one light
+    reliefs      the project's own metric, see `metric.vector`: pictures of reliefs under one light
 """
 
 from __future__ import annotations
@@ -34,6 +34,6 @@ class Measure:
 MEASURES: dict[str, Measure] = {
     "structures": Measure("structures", lambda: vectors.LENGTH, "float32", vectors.definition, True),
     # Half precision changes a distance by a thousandth at most (tests/unit/test_metric_rows.py).
-    "reliefs": Measure("reliefs", vector.row_length, "float16", vector.definition, False),
+    "reliefs": Measure("reliefs", vector.vector_length, "float16", vector.definition, False),
 }
 """The measures by name."""

@@ -26,7 +26,7 @@ OWN_SEED = 0x6B6E6F77
 
 
 @dataclass(frozen=True)
-class Familiarity:
+class Novelty:
     """How far an answer is beside pictures of its model: its distance D, and the largest of theirs."""
 
     model: str
@@ -49,9 +49,9 @@ class Familiarity:
         )
 
 
-def familiarity(
+def novelty_of(
     group: Group, answer: Answer, *, rotations: bool = True, swap: bool = True, side: int = SIDE
-) -> Familiarity | None:
+) -> Novelty | None:
     """Return how far ``answer`` is beside ``PICTURES`` random pictures, of ``side`` pixels, of its model.
 
     None for entries that are of no structure model. About a second.
@@ -64,4 +64,4 @@ def familiarity(
         s = structure(model, random_values(model, k, OWN_SEED), side, seed=OWN_SEED)
         vector = vector_of(spanned(s, span_of(s)))
         found.append(nearest(group.table, vector, 1, rotations=rotations, swap=swap)[0].distance)
-    return Familiarity(answer.model, answer.distance, max(found))
+    return Novelty(answer.model, answer.distance, max(found))

@@ -86,11 +86,11 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
     return found
 
 
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
+def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
     """Sum of w_i^2 d_i^2 of equation 6, d_i^2 = (mean - mean')^2 + (deviation - deviation')^2 the squared 2-Wasserstein
     distance of two Gaussians (Dowson & Landau 1982). The root over the sum of all parts is left out, as in the paper."""
-    gaps = np.nan_to_num(np.sum((a - b) ** 2, axis=0, keepdims=True))
-    return float(np.sum(gaps if basis is None else gaps * basis**2))
+    gaps = np.nan_to_num(np.sum((a - b) ** 2, axis=-2, keepdims=True))
+    return np.asarray(np.sum(gaps if basis is None else gaps * basis**2, axis=(-2, -1)))
 
 
 @lru_cache

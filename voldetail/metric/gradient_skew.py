@@ -1,4 +1,4 @@
-"""Which way relief leans under its light: the lopsided part of brightness differences, by direction and distance.
+"""Skew of the gradient, which tells from where relief is lit: the lopsided part of brightness differences by direction.
 
 Relief lit from one side is not the same upside down: slopes that face the light are broad and bright, those that turn away
 short and dark, and shadows end sharply on one side. Spectra, correlations of magnitudes, local patterns and openings are
@@ -36,9 +36,9 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
     return found
 
 
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
+def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
     """Mean absolute difference over quantiles and lags."""
-    return float(np.mean(np.abs(a - b)))
+    return np.asarray(np.mean(np.abs(a - b), axis=(-2, -1)))
 
 
 def _gap(image: Array, rows: int, columns: int) -> Array:

@@ -41,7 +41,7 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
     return found
 
 
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
+def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
     """1-Wasserstein distance, mean over radii, in the reference's standard deviations."""
     return wasserstein(a, b, basis)
 

@@ -1,7 +1,7 @@
 """How filter magnitudes go together: over frequencies, levels and space (after Portilla & Simoncelli 2000, section 2).
 
-Edges, cracks and grains excite several orientations, frequencies and levels at one place, and again at the next
-grain; a picture with the same spectrum and random phases does not. The magnitudes are those of GD10 eq. 4, so they
+Edges, cracks and stones excite several orientations, frequencies and levels at one place, and again at the next
+stone; a picture with the same spectrum and random phases does not. The magnitudes are those of GD10 eq. 4, so they
 cost nothing more. Correlations do not see the spectrum itself, nor contrast.
 """
 
@@ -51,13 +51,8 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
     return found
 
 
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
-    """Root mean square difference of the correlations."""
-    return float(apart(a, b, basis))
-
-
 def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
-    """The same for any number of ``b`` (..., n) at once."""
+    """Root mean square difference of the correlations, of any number of ``b`` (..., n) at once."""
     return np.asarray(np.sqrt(np.mean((a - b) ** 2, axis=-1)))
 
 

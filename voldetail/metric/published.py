@@ -35,6 +35,6 @@ def measure(layers: Layers, tops: Parts, /) -> Parts:
     return found
 
 
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
+def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
     """One level's share of M: the squared differences summed over frequencies and bins."""
-    return float(np.sum((a.astype(np.float64) - b) ** 2))
+    return np.asarray(np.sum((a.astype(np.float64) - b) ** 2, axis=(-2, -1)))

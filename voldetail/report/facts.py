@@ -80,7 +80,7 @@ def facts(result: FitResult) -> list[tuple[str, str]]:
         ("Solver", f"{setup.fit.solver}, metric {setup.fit.metric}, seed {setup.seed}; {result.status}"),
         ("Distance", distance_words(result)),
         *([("Colour", colour_words(result))] if result.colour is not None else []),
-        *([("Medium", medium_words(result))] if result.told else [("Amplitude", amplitude_words(result))]),
+        *([("Medium", medium_words(result))] if result.identifiability else [("Amplitude", amplitude_words(result))]),
     ]
 
 
@@ -144,7 +144,7 @@ def evenness_words(result: FitResult) -> str:
 def medium_words(result: FitResult) -> str:
     """What the photo tells of each number of a medium, and what it does not."""
     said, open_ = [], []
-    for t in result.told:
+    for t in result.identifiability:
         label = parameter(t.key).label.lower()
         if t.nothing:
             open_.append(label)

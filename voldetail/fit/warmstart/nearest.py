@@ -23,7 +23,7 @@ MIRRORS = (False, True)
 
 @dataclass(frozen=True)
 class Found:
-    """A relief near a photo: its number, whether it has to be mirrored, its distance times its kind's handicap."""
+    """A relief near a photo: its number, whether it has to be mirrored, its distance times its kind's penalty."""
 
     number: int
     mirrored: bool
@@ -39,9 +39,9 @@ def nearest_reliefs(target: Target, setup: Setup, reliefs: Series, top: int) -> 
     azimuth, _ = direction_at_zone(target.lamp, view)
     asked = turned(target, azimuth)
     looks, rows = [look(k, reliefs.seed) for k in range(len(reliefs.rows))], reliefs.rows[:]
-    handicaps = np.array([one.kind.handicap for one in looks])
+    penalties = np.array([one.kind.penalty for one in looks])
     # One row for each side of the light; the same order on every machine where two are equal.
-    apart = np.stack([_distances(asked.mirrored() if mirrored else asked, rows) * handicaps for mirrored in MIRRORS])
+    apart = np.stack([_distances(asked.mirrored() if mirrored else asked, rows) * penalties for mirrored in MIRRORS])
     order = np.argsort(apart.ravel(), kind="stable")[:top]
     best = tuple(Found(int(k) % len(looks), MIRRORS[int(k) // len(looks)], float(apart.ravel()[k])) for k in order)
     window = max(view.rows, view.columns) * view.pixel

@@ -12,7 +12,7 @@ from voldetail.backend import mitsuba
 from voldetail.fit.warmstart.exposure import exposed
 from voldetail.fit.warmstart.reliefs import FINE, SIDE, Look
 from voldetail.metric import Descriptor, describe
-from voldetail.metric.vector import row_of
+from voldetail.metric.vector import combined_vector
 from voldetail.render.build import build
 from voldetail.render.unit_components import Components, components
 from voldetail.setup.file import setup_from
@@ -54,7 +54,7 @@ def rows(looks: Iterable[Look], elevation: float) -> Iterator[NDArray[np.float16
 
 def _described(parts: Components, reference: Descriptor) -> NDArray[np.float16]:
     picture = exposed(parts.luminance(AMBIENT, DIFFUSE, 0.0, SHININESS[0]))
-    return row_of(describe(picture, like=reference)).astype(np.float16)
+    return combined_vector(describe(picture, like=reference)).astype(np.float16)
 
 
 def _reference() -> Descriptor:

@@ -32,7 +32,7 @@ SPACE = Space(
     domain="solid", scale=(1.0 / (LARGEST_CELL * WINDOW), FINE / (SMALLEST_CELL * WINDOW)),
     finest=FINE / (FINEST_OCTAVE * WINDOW),
 )  # fmt: skip
-"""The space of a fit of a whole photo, see `fit.shown.space_of`."""
+"""The space of a fit of a whole photo, see `fit.resolvable.space_of`."""
 
 SPREAD = 0.12
 """Deviation by which numbers are moved, of their ranges: neighbouring scales of one look just meet."""
