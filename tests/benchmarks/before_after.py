@@ -22,10 +22,11 @@ from voldetail.backend import mitsuba
 from voldetail.detail import Detail, load_detail, save_detail
 from voldetail.files import write_text
 from voldetail.fit import fit
-from voldetail.fit.target import Target, make_target
+from voldetail.fit.target import make_target
 from voldetail.image import luminance
 from voldetail.render.build import build
 from voldetail.render.heightfield import HeightField
+from voldetail.results import Target
 from voldetail.setup.setup import Setup
 
 METRICS = ("published", "combined", "patches")

@@ -43,10 +43,11 @@ from tests.benchmarks.relit import (
 from voldetail.errors import InputError
 from voldetail.files import write_text
 from voldetail.fit import fit
-from voldetail.fit.target import Target, make_target
+from voldetail.fit.target import make_target
 from voldetail.image import Photo, load_photo, luminance
 from voldetail.render.build import build
 from voldetail.render.heightfield import HeightField
+from voldetail.results import Target
 from voldetail.setup.file import setup_from
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.light import Light, parse_light
@@ -179,7 +180,7 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
         return setup_from(
             {
                 "photo": {"path": f"{capture.name}.png", "zone": zone}, "light": light,
-                "mask": mask_of(capture.name), "fit": {"evaluations": evaluations},
+                "mask": mask_of(capture.name), "fit": {"evaluations": evaluations, "library": "none"},
             },
             capture.name,
         )

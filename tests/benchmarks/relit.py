@@ -14,12 +14,11 @@ from scipy.ndimage import binary_erosion, gaussian_filter, map_coordinates
 from tests.benchmarks.yardsticks import reference
 from voldetail.backend import mitsuba
 from voldetail.detail import Reflectance
-from voldetail.fit.interval import AmplitudeInterval
 from voldetail.fit.reflectance import solve
-from voldetail.fit.target import Target
 from voldetail.image import to_srgb
 from voldetail.render.heightfield import MARGIN, HeightField
 from voldetail.render.unit_components import Components, components
+from voldetail.results import AmplitudeInterval, Target
 from voldetail.setup.lamp import Lamp
 
 Picture = NDArray[np.float32]

@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from voldetail.fit import fit
 from voldetail.fit.fitter import takes_starts
 from voldetail.fit.session import State
 from voldetail.fit.state_file import load_state
-from voldetail.fit.target import Target, load_photo_of, make_target
+from voldetail.fit.target import load_photo_of, make_target
 from voldetail.fit.warmstart import ReliefSource, starts_from
 from voldetail.fit.warmstart.light import direction_at_zone
 from voldetail.fit.warmstart.nearest import nearest_reliefs
@@ -25,6 +26,7 @@ from voldetail.library.building.build import build as build_library
 from voldetail.library.store import Library, open_library
 from voldetail.render.build import build
 from voldetail.render.unit_components import components
+from voldetail.results import Target
 from voldetail.setup.file import setup_from
 from voldetail.setup.lamp import lamp_of
 from voldetail.setup.setup import Setup
@@ -174,28 +176,35 @@ def test_which_fits_are_told_where_to_start() -> None:
     assert not takes_starts(wanted("0,50", "auto", solver="paper"))
 
 
-def test_a_fit_that_is_told_where_to_start_begins_there_and_goes_on_with_its_plan(reliefs: Library) -> None:
+def test_a_fit_that_is_told_where_to_start_begins_there_and_goes_on_with_its_plan(
+    reliefs: Library, monkeypatch: pytest.MonkeyPatch
+) -> None:
     fine = next(k for k in range(LOOKS) if look(k).detail().noise.scale > 8)
     photo, light = photo_of(turned(fine, 0.6, False), f"{math.degrees(0.6)},50"), f"{math.degrees(0.6)},50"
     setup = wanted(light, str(reliefs.header.path), evaluations=30, specular=False).model_copy(update={"colour": "none"})
-    told: list[State] = []
+    started: list[State] = []
     alone: list[State] = []
 
-    def starts_for(setup: Setup, target: Target) -> tuple[Start, ...]:
-        return starts_from(setup, target)[:8]
+    asked: list[Setup] = []
 
-    result = fit(setup, photo=photo, starts_for=starts_for, on_state=told.append)
-    fit(setup, photo=photo, on_state=alone.append)
-    assert [state.started for state in (*told, *alone)] == [True] * len(told) + [False] * len(alone)
+    def few(setup: Setup, target: Target, **more: Any) -> tuple[Start, ...]:
+        asked.append(setup)
+        return starts_from(setup, target, **more)[:8]
+
+    monkeypatch.setattr("voldetail.fit.fitter.starts_from", few)
+    result = fit(setup, photo=photo, on_state=started.append)
+    without = setup.model_copy(update={"fit": setup.fit.model_copy(update={"library": "none"})})
+    fit(without, photo=photo, on_state=alone.append)
+    assert [state.started for state in (*started, *alone)] == [True] * len(started) + [False] * len(alone)
     assert result.detail.provenance is not None
     assert result.detail.provenance.settings["library"] == setup.fit.library
     kinds = {start.kind for start in starts_from(setup, make_target(setup, photo))[:8]}
-    assert {candidate.kind for state in told for candidate in state.pool} <= kinds
+    assert {candidate.kind for state in started for candidate in state.pool} <= kinds
     # A state that knows of no starts goes on without, whatever the setup says now.
-    asked: list[Setup] = []
-    fit(setup, photo=photo, start=alone[-1], starts_for=lambda setup, target: asked.append(setup) or ())
+    asked.clear()
+    fit(setup, photo=photo, start=alone[-1])
     assert not asked
-    fit(setup, photo=photo, start=told[-1], starts_for=lambda setup, target: asked.append(setup) or starts_for(setup, target))
+    fit(setup, photo=photo, start=started[-1])
     assert len(asked) == 1
 
 

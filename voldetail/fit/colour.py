@@ -8,7 +8,6 @@ may go with noise of its own ("by-example"), with the relief's height, one way o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +21,7 @@ from voldetail.image import to_linear, to_srgb
 from voldetail.metric import Descriptor, describe, distance
 from voldetail.render.unit_components import components
 from voldetail.render.volume import Volume
+from voldetail.results.colour import ColourChoice
 from voldetail.texture import CURVE_PROBABILITIES, analyse, picture
 
 DRIVERS: dict[str, tuple[str, ...]] = {
@@ -35,23 +35,13 @@ NAMES = {"noise": "by-example", "height": "height", "hollow": "height", "cell": 
 PENALTIES = {"height": 1.06, "hollow": 1.06, "cell": 1.06}
 """Factors on the distances by which a colour that goes with the relief has to pay for itself. Without them it won by a few
 percent on most photographs, and was further from those under other lights than colour by example was (tuned on two of the
-captures of ../shared/data/multilight)."""
+captures of one surface under several lights)."""
 
 GREY = 0.03
 """Share of the most varied channel's deviation below which another tells nothing: the noise of a compressed grey photo."""
 
 MEAN_SIDE = 256
 """Texels a side of the texture whose mean is divided by."""
-
-
-@dataclass(frozen=True)
-class ColourChoice:
-    """The colour of a detail: what was chosen, how far each try was from the photo, and the picture (H, W, 3)."""
-
-    detail: Detail
-    chosen: str
-    distances: dict[str, float]
-    picture: NDArray[np.float32]
 
 
 class ColourDistance:

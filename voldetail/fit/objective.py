@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from voldetail.detail import Detail
 from voldetail.errors import InputError
 from voldetail.fit.reflectance import solve
-from voldetail.fit.target import Target
 from voldetail.image import resize, resize_mask
 from voldetail.metric import Descriptor, describe, distance
 from voldetail.render.heightfield import HeightField
 from voldetail.render.mesh_surface import MeshSurface
 from voldetail.render.unit_components import SHININESS, Components, components
 from voldetail.render.volume import Volume
+from voldetail.results import Target
 
 UNUSABLE = 1e3
 """Distance of a picture that cannot be compared (the surface left the mask): far, but a number for the search."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,15 +13,16 @@ from voldetail.errors import InputError
 from voldetail.fit.evenness import evened, unevenness
 from voldetail.fit.zone import around, check_zone, default_zone
 from voldetail.image import Photo, load_mask, load_photo, luminance, resize, resize_mask
-from voldetail.metric import Descriptor, describe, distance
+from voldetail.metric import describe, distance
 from voldetail.render.build import faces_camera
+from voldetail.results.target import Target
 from voldetail.setup.lamp import Lamp, lamp_of
 from voldetail.setup.setup import SKIMAGE_PREFIX, Setup
-from voldetail.setup.view import View, Zone, view_of
+from voldetail.setup.view import View, view_of
 
 SLOW_SHADING = 0.12
-"""Blur, in zone widths, that separates a near light's fall-off from the texture; tuned on the flash photographs of
-../shared/data, where the main wavelength is a tenth of this."""
+"""Blur, in zone widths, that separates a near light's fall-off from the texture; tuned on the flash photographs, where the main
+wavelength is a tenth of this."""
 
 REACH = 3.0
 """How many times the zone's side the part of the photo is long that an even picture of the zone is made of."""
@@ -30,38 +31,15 @@ BLACK = 1e-6
 """Mean luminance of a photo below which it has no colour; a hundredth of the darkest 8-bit value but black."""
 
 
-@dataclass(frozen=True)
-class Target:
-    """What a rendering is compared with.
-
-    white: the luminance at which the photo burns out; renderings are clipped there, as the camera did.
-    pixels (H, W, 3) and luminance (H, W): the zone, linear, at working resolution. mask (H, W). shape: rows and columns
-    of the whole photo; zone in its pixels. photo_halves: distance between the two halves of the zone. unevenness: of the photo
-    (fit.evenness), before anything was evened; None where it means nothing.
-    """
-
-    photo: Photo
-    pixels: NDArray[np.float32]
-    luminance: NDArray[np.float32]
-    mask: NDArray[np.bool_]
-    shape: tuple[int, int]
-    zone: Zone
-    lamp: Lamp
-    tint: tuple[float, float, float]
-    descriptor: Descriptor
-    photo_halves: float | None
-    white: float
-    unevenness: float | None = None
-
-    def reduced(self, metric: str, size: tuple[int, int]) -> Target:
-        """Return the same target at fewer pixels (rows, columns), for the coarse pass."""
-        pixels = resize(self.pixels, size)
-        light = luminance(pixels)
-        mask = resize_mask(self.mask, size)
-        return Target(
-            self.photo, pixels, light, mask, self.shape, self.zone, self.lamp, self.tint,
-            describe(light, mask, metric=metric), None, self.white,
-        )
+def reduced(target: Target, metric: str, size: tuple[int, int]) -> Target:
+    """Return the same target at fewer pixels (rows, columns), for the coarse pass."""
+    pixels = resize(target.pixels, size)
+    light = luminance(pixels)
+    mask = resize_mask(target.mask, size)
+    return replace(
+        target, pixels=pixels, luminance=light, mask=mask, descriptor=describe(light, mask, metric=metric),
+        photo_halves=None, unevenness=None,
+    )  # fmt: skip
 
 
 def load_photo_of(setup: Setup) -> Photo:

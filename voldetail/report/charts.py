@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,9 +13,7 @@ from numpy.typing import NDArray
 from voldetail.detail import Detail
 from voldetail.image import luminance, to_srgb
 from voldetail.report.verdict import number
-
-if TYPE_CHECKING:
-    from voldetail.fit.fitter import FitResult
+from voldetail.results import FitResult
 
 PHOTO_COLOUR = "#4f86c6"
 FIT_COLOUR = "#e8833a"  # both legible on white and on near-black, and apart for every common colour vision

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from voldetail.errors import InputError
-from voldetail.fit.target import Target
 from voldetail.fit.warmstart.light import direction_at_zone
 from voldetail.fit.warmstart.nearest import nearest_reliefs
 from voldetail.fit.warmstart.source import ELEVATIONS, ENTRIES, ReliefSource
@@ -16,6 +15,7 @@ from voldetail.library.building.build import BuildProgress
 from voldetail.library.cache import cached
 from voldetail.library.groups import Series
 from voldetail.library.store import Library, open_library
+from voldetail.results import Target
 from voldetail.setup.setup import Setup
 from voldetail.setup.view import view_of
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import rotate
 
-from voldetail.fit.target import Target
 from voldetail.fit.warmstart.reliefs import SIDE
 from voldetail.image import resize
+from voldetail.results import Target
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.view import View
 

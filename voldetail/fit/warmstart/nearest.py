@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from voldetail.fit.target import Target
 from voldetail.fit.warmstart.exposure import exposed
 from voldetail.fit.warmstart.light import Turned, direction_at_zone, turned
 from voldetail.fit.warmstart.reliefs import look, seen_through
@@ -15,6 +14,7 @@ from voldetail.fit.warmstart.start import Start
 from voldetail.library.groups import Series
 from voldetail.metric import describe
 from voldetail.metric.vector import distances
+from voldetail.results import Target
 from voldetail.setup.setup import Setup
 from voldetail.setup.view import view_of
 
