@@ -14,7 +14,6 @@ from voldetail.detail.parameters import (
     Reflectance,
     ReliefParameters,
     bounds,
-    help_text,
     parameter,
     parameters_of,
 )
@@ -49,7 +48,6 @@ __all__ = [
     "detail_from",
     "detail_from_text",
     "detail_to_text",
-    "help_text",
     "load_detail",
     "parameter",
     "parameters_of",

@@ -195,13 +195,6 @@ def bounds(key: str) -> tuple[float, float]:
     return declaration.lower, declaration.upper
 
 
-def help_text(key: str) -> str:
-    """One line for a command's help: the sentence, the symbol, what is allowed and the default."""
-    declaration = parameter(key)
-    default = "" if declaration.count > 1 else f"; default {declaration.default}"
-    return f"{declaration.sentence} ({declaration.symbol}: {declaration.allowed}{default})"
-
-
 def declared(key: str) -> Any:
     """The pydantic field of the parameter `key`, for a record that has it too."""
     return field_of(parameter(key))

@@ -1,4 +1,4 @@
-"""Looks that nature repeats, as starting points: cheap to try, and rarely met by samples that only cover the space."""
+"""Reliefs that nature repeats, as starting points: cheap to try, and rarely met by samples that only cover the space."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ ARCHETYPES: tuple[tuple[str, Kind, dict[str, float]], ...] = (
      {"noise.stripe_frequency": 1.0, "noise.stripe_spread": math.pi, "noise.lacunarity": 2.0}),
     ("creases", Kind(1, 50, "gaussian", 3, False, fold="ridge"), {"noise.lacunarity": 2.0}),
 )
-"""Name, kind and numbers of each look; scale, roughness and stretch are varied over them."""
+"""Name, kind and numbers of each archetype; scale, roughness and stretch are varied over them."""
 
 CLOUDS: tuple[tuple[str, Kind, dict[str, float]], ...] = (
     ("cumulus", Kind(1, 50, "gaussian", 4, False),
@@ -86,12 +86,12 @@ MEDIUM_ROUGHNESS = (0.7, 1.7)
 
 
 def archetypes_of(space: Space) -> tuple[tuple[str, Kind, dict[str, float]], ...]:
-    """Return the looks that can be searched in ``space``."""
+    """Return the archetypes that can be searched in ``space``."""
     return CLOUDS if space.medium else ARCHETYPES
 
 
 def archetypes(space: Space, anisotropy: tuple[float, float]) -> list[Candidate]:
-    """Return every look at several scales and two roughnesses, stretched as the photo's spectrum is.
+    """Return every archetype at several scales and two roughnesses, stretched as the photo's spectrum is.
 
     Scales run evenly, on a logarithmic scale, over the middle of what the picture can show.
     """

@@ -76,15 +76,15 @@ def default_plan(
     rounds = effort.rounds
     fine_rounds = [index for index, (_, _, fine) in enumerate(rounds) if fine]
     ranked = UNSEEN_SEEDS * (sum(rounds[index][0] for index in (fine_rounds[0] - 1, *fine_rounds)) + 2)
-    looks = [start.candidate(space) for start in starts] or archetypes(space, anisotropy)
-    total = len(looks) + effort.cover + sum(count * each for count, each, _ in rounds) + effort.last + ranked
+    first = [start.candidate(space) for start in starts] or archetypes(space, anisotropy)
+    total = len(first) + effort.cover + sum(count * each for count, each, _ in rounds) + effort.last + ranked
     factor = 1.0 if evaluations is None else evaluations / total
 
     def scaled(count: int) -> int:
         return max(4, round(count * factor))
 
     def cover(session: Session) -> None:
-        candidates = looks[:: math.ceil(1.0 / factor)] if factor < 1.0 else list(looks)
+        candidates = first[:: math.ceil(1.0 / factor)] if factor < 1.0 else list(first)
         if effort.cover:
             candidates += sampled(space, scaled(effort.cover), derived_seed(session.root_seed, "cover"), anisotropy)
         _compare(session, candidates)

@@ -17,7 +17,6 @@ from voldetail.library.entries import SIDE
 from voldetail.library.span import TRIM
 from voldetail.library.two_tone import TwoTone, two_tone
 from voldetail.library.vectors import SMALLEST_SIDE, vector_of
-from voldetail.metric.gabor import REACH, SIGMAS
 from voldetail.texture.analysis import pixels_of
 
 Array = NDArray[np.float32]
@@ -25,9 +24,6 @@ Zone = tuple[int, int, int, int]
 
 LARGEST_SIDE = 2048
 """Pixels of a photo that is described: seconds and some hundred MB."""
-
-ALL_SCALES_SIDE = int(np.ceil(2 * REACH * SIGMAS[-1]))
-"""Pixels of the smallest side on which the coarsest filters fit, 101."""
 
 
 @dataclass(frozen=True, eq=False)

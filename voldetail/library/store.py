@@ -160,8 +160,8 @@ def _group(folder: Path, name: str, record: SourceRecord, w: NDArray[np.float64]
 
 def _series(folder: Path, name: str, record: SourceRecord) -> Series:
     arrays = arrays_of(record.entries, len(record.keys), "reliefs")
-    values, rows = _rows(folder, arrays["values"], np.float64), _rows(folder, arrays["vectors"], np.float16)
-    return Series(name, tuple(record.keys), values, rows, record.seed, record.definition)
+    values, vectors = _rows(folder, arrays["values"], np.float64), _rows(folder, arrays["vectors"], np.float16)
+    return Series(name, tuple(record.keys), values, vectors, record.seed, record.definition)
 
 
 def _rows(folder: Path, array: ArrayLayout, kind: Any) -> Rows[Any]:

@@ -57,7 +57,7 @@ def starts_from(
 
 
 def _nearest_series(library: Library, elevation: float) -> Series:
-    """The series whose light is nearest, if it is of this voldetail's looks."""
+    """The series whose light is nearest, if it is of this voldetail's reliefs."""
     where = f"The library {library.header.path}"
     if not library.series:
         raise InputError(f"{where} has no reliefs but structures; give one made by voldetail library build relief.")

@@ -65,11 +65,6 @@ class StructureModel:
     evaluate: Callable[[Any, Any, Values, int], Any]
 
     @property
-    def defaults(self) -> dict[str, float]:
-        """The default of every parameter."""
-        return {p.key: p.default for p in self.parameters}
-
-    @property
     def grid_size(self) -> int:
         """How many entries a grid over all stops has."""
         count = 1
