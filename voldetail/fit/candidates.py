@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from voldetail.detail import MONOTONE_CURVES, PAPER_NEIGHBOURS, PARAMETERS, START_CURVES
@@ -60,7 +61,6 @@ def sampled(
     ]
     generator = qmc.Sobol(d=DIMENSIONS, scramble=True, seed=np.random.default_rng(seed))
     points = generator.random_base2(math.ceil(math.log2(max(count, 2))))[:count]
-    factor, angle = anisotropy
     out = []
     for index, point in enumerate(points):
         (first, last), (striped, fold, bordered, stones, plates) = families[index % len(families)]
@@ -70,26 +70,32 @@ def sampled(
             first, last, "gaussian" if point[8] < 0.5 else "exponential", octaves, striped, fold, bordered,
             extended and space.pigmented and point[10] < 0.5, stones, plates,
         )
-        low, high = space.scale
-        rough_low, rough_high = space.roughness
-        stretched = (index // len(families)) % 2 == 0
-        shape = START_CURVES[MONOTONE_CURVES[int(point[3] * len(MONOTONE_CURVES)) % len(MONOTONE_CURVES)]]
-        values = {
-            "noise.scale": low * (high / low) ** float(point[0]),
-            "roughness": rough_low * (rough_high / rough_low) ** float(point[1]),
-            "noise.anisotropy": 1.0 / factor if stretched else 1.0, "stone_stretch": 1.0,
-            "noise.angle": angle if stretched else math.pi * float(point[2]),
-            "stone_height": 0.5 + 0.6 * float(point[1]), "noise.gain": 1.0, "plate_gain": 0.1 + 0.4 * float(point[9]),
-            "plate_dust": 0.15 * float(point[6]), "stone_gain": 0.05 * 8.0 ** float(point[9]),
-            "reflectance.speckle_scale": space.finest * 0.5 ** float(point[12]),
-            "noise.stripe_spread": math.pi * (1.0 if point[6] < 0.5 else float(point[7])),
-        } | {p.key: p.cover.at(float(point[p.cover.dimension])) for p in PARAMETERS if p.cover is not None}
-        values |= {f"shape.{i}": float(v) for i, v in enumerate(shape_of(shape))}
-        if space.medium:
-            # The places of the sequence that pigment and stones, which a medium has not, would take.
-            values |= {name: space.at(name, float(point[10 + i])) for i, name in enumerate(MEDIUM_NAMES)}
-        out.append(Candidate(kind, space.encode(kind, values)))
+        # Half of them as stretched as the photo, half round.
+        turned = (index // len(families)) % 2 == 0
+        out.append(Candidate(kind, space.encode(kind, _numbers_at(space, point, anisotropy if turned else None))))
     return out
+
+
+def _numbers_at(space: Space, point: NDArray[np.float64], anisotropy: tuple[float, float] | None) -> dict[str, float]:
+    """Return the numbers at a ``point`` of the sequence; those of ``anisotropy``, if given, are not the sequence's."""
+    low, high = space.scale
+    rough_low, rough_high = space.roughness
+    shape = START_CURVES[MONOTONE_CURVES[int(point[3] * len(MONOTONE_CURVES)) % len(MONOTONE_CURVES)]]
+    values = {
+        "noise.scale": low * (high / low) ** float(point[0]),
+        "roughness": rough_low * (rough_high / rough_low) ** float(point[1]),
+        "noise.anisotropy": 1.0 / anisotropy[0] if anisotropy else 1.0, "stone_stretch": 1.0,
+        "noise.angle": anisotropy[1] if anisotropy else math.pi * float(point[2]),
+        "stone_height": 0.5 + 0.6 * float(point[1]), "noise.gain": 1.0, "plate_gain": 0.1 + 0.4 * float(point[9]),
+        "plate_dust": 0.15 * float(point[6]), "stone_gain": 0.05 * 8.0 ** float(point[9]),
+        "reflectance.speckle_scale": space.finest * 0.5 ** float(point[12]),
+        "noise.stripe_spread": math.pi * (1.0 if point[6] < 0.5 else float(point[7])),
+    } | {p.key: p.cover.at(float(point[p.cover.dimension])) for p in PARAMETERS if p.cover is not None}
+    values |= {f"shape.{i}": float(v) for i, v in enumerate(shape_of(shape))}
+    if space.medium:
+        # The places of the sequence that pigment and stones, which a medium has not, would take.
+        values |= {name: space.at(name, float(point[10 + i])) for i, name in enumerate(MEDIUM_NAMES)}
+    return values
 
 
 PAPER_FREQUENCIES = (0.0, 2.0, 4.0)

@@ -66,14 +66,33 @@ def fit(
     metric_named(setup.fit.metric)
     mitsuba()
     photo = photo or load_photo_of(setup)
-    setup, found = resolve_light(setup, photo)
-    light_guess = found or light_guess
+    setup, guess = resolve_light(setup, photo)
+    light_guess = guess or light_guess
     target = make_target(setup, photo)
     on_target(target)
     starts: Sequence[Start] = ()
     if takes_starts(setup) if start is None else start.started:
         starts = starts_from(setup, target, on_progress=on_library_progress, on_remark=on_remark)
     session, stages = _session(setup, target, start, starts, on_progress, on_state)
+    status, interrupted = _search(session, stages)
+    final = _finish(session)
+    heights = None if interrupted else _heights(setup, session, final)
+    identifiability = () if interrupted else _identifiability(session, final)
+    final, background = coloured(target, final)
+    colour = None if interrupted else _colour(setup, session, final)
+    if colour is not None:
+        final = replace(final, detail=colour.detail)
+    return FitResult(
+        detail=signed(final, setup, target, session, Findings(status, light_guess, heights, identifiability, background, colour)),
+        setup=setup, target=target,
+        picture=final.picture, covered=final.covered, background=background, distance=final.distance,
+        evaluations=session.evaluations, seconds=session.seconds, status=status, trace=tuple(session.trace),
+        interrupted=interrupted, light_guess=light_guess, heights=heights, identifiability=identifiability, colour=colour,
+    )
+
+
+def _search(session: Session, stages: Sequence[Stage]) -> tuple[str, bool]:
+    """Carry out the plan, as far as it gets; returns why it ended, and whether the user ended it."""
     status, interrupted = "the plan was carried out", False
     try:
         while session.stage < len(stages):
@@ -92,20 +111,7 @@ def fit(
         session.pool = [session.first]
     if not session.pool:
         raise VoldetailError("The fit was stopped before a first detail was found: let it run a little longer.")
-    final = _finish(session)
-    heights = None if interrupted else _heights(setup, session, final)
-    identifiability = () if interrupted else _identifiability(session, final)
-    final, background = coloured(target, final)
-    colour = None if interrupted else _colour(setup, session, final)
-    if colour is not None:
-        final = replace(final, detail=colour.detail)
-    return FitResult(
-        detail=signed(final, setup, target, session, Findings(status, light_guess, heights, identifiability, background, colour)),
-        setup=setup, target=target,
-        picture=final.picture, covered=final.covered, background=background, distance=final.distance,
-        evaluations=session.evaluations, seconds=session.seconds, status=status, trace=tuple(session.trace),
-        interrupted=interrupted, light_guess=light_guess, heights=heights, identifiability=identifiability, colour=colour,
-    )
+    return status, interrupted
 
 
 def takes_starts(setup: Setup) -> bool:

@@ -30,10 +30,10 @@ ACTIVE_SET_STEPS = 12
 
 GLOSS_GAIN = 0.7
 """Share of a matt surface's residual that a highlight may at most leave: a broad one on flat relief can stand for shading
-that relief should make, and then shines on every other shape. Tuned on the weathered rock of ../shared/data."""
+that relief should make, and then shines on every other shape. Tuned on a weathered rock."""
 
 GLOSS_LIMIT = 0.06
-"""Largest Ks: what a dielectric of index 1.65 reflects head-on. With more, white lichen on a slab of ../shared/data became
+"""Largest Ks: what a dielectric of index 1.65 reflects head-on. With more, white lichen on a slab became
 a mirror."""
 
 DARKEST_BACKGROUND = 0.6

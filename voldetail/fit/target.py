@@ -18,7 +18,7 @@ from voldetail.render.build import faces_camera
 from voldetail.results.target import Target
 from voldetail.setup.lamp import Lamp, lamp_of
 from voldetail.setup.setup import SKIMAGE_PREFIX, Setup
-from voldetail.setup.view import View, view_of
+from voldetail.setup.view import View, Zone, view_of
 
 SLOW_SHADING = 0.12
 """Blur, in zone widths, that separates a near light's fall-off from the texture; tuned on the flash photographs, where the main
@@ -70,11 +70,9 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
     mask = mask_of(setup, photo)
     zone = setup.photo.zone or default_zone(luminance(photo.pixels), mask, setup.photo.resolution)
     check_zone(zone, (rows, columns))
-    x, y, w, h = zone
-    factor = setup.photo.resolution / max(w, h)
-    size = (max(1, round(h * factor)), max(1, round(w * factor)))
-    pixels = resize(photo.pixels[y : y + h, x : x + w], size)
-    used = resize_mask(mask[y : y + h, x : x + w], size)
+    factor = setup.photo.resolution / max(zone[2:])
+    pixels, used = _cut(photo.pixels, mask, zone, factor)
+    size = (used.shape[0], used.shape[1])
     if not used.any():
         raise InputError("The mask leaves nothing of the zone to compare: use a larger mask or another --zone.")
     lamp = lamp_of(setup.light, luminance(photo.pixels))
@@ -86,9 +84,7 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
         source, seen = pixels, used
         if setup.photo.zone is None and lamp.position is None:
             # A zone that the user drew says what is meant; else there is more of the surface beside it.
-            x, y, w, h = around(zone, (rows, columns), REACH)
-            whole = (round(h * factor), round(w * factor))
-            source, seen = resize(photo.pixels[y : y + h, x : x + w], whole), resize_mask(mask[y : y + h, x : x + w], whole)
+            source, seen = _cut(photo.pixels, mask, around(zone, (rows, columns), REACH), factor)
         pixels, used = evened(source, seen, size, setup.seed), np.ones_like(used)
     light = luminance(pixels)
     mean = pixels[used].mean(axis=0).astype(np.float64)
@@ -101,6 +97,15 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
         descriptor=descriptor, photo_halves=halves_apart(light, used, setup.fit.metric),
         white=max(1.0, float(light.max())), unevenness=uneven,
     )
+
+
+def _cut(
+    pixels: NDArray[np.float32], mask: NDArray[np.bool_], zone: Zone, factor: float
+) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+    """Return a part of the photo and of its mask, resized."""
+    x, y, w, h = zone
+    size = (max(1, round(h * factor)), max(1, round(w * factor)))
+    return resize(pixels[y : y + h, x : x + w], size), resize_mask(mask[y : y + h, x : x + w], size)
 
 
 def _with_falloff_of(
