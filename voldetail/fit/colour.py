@@ -102,17 +102,17 @@ def choose_colour(
     learnt = _learnt(objective, [e.picture for e in evaluations], seen, detail.seed, name)
     tries = {driver: _driven(objective, detail, driver, learnt) for driver in drivers}
     if volume or len(drivers) == 1:
-        driver, made = next(iter(tries.items()))
-        return ColourChoice(made, NAMES[driver], {}, plain if volume else _colours(objective, made)[0])
+        driver, coloured_detail = next(iter(tries.items()))
+        return ColourChoice(coloured_detail, NAMES[driver], {}, plain if volume else _colours(objective, coloured_detail)[0])
     if colour == "auto":
         tries = {"none": detail, **tries}
     try:
         judge = ColourDistance(target.pixels, target.mask, target.descriptor.metric)
-        found = {driver: _far(objective, made, judge, seeds) for driver, made in tries.items()}
+        distances = {driver: _far(objective, coloured_detail, judge, seeds) for driver, coloured_detail in tries.items()}
     except InputError:  # too little is seen of it to be compared
         return ColourChoice(detail, "none", {}, plain)
-    best = min(found, key=lambda driver: found[driver] * PENALTIES.get(driver, 1.0))
-    return ColourChoice(tries[best], NAMES.get(best, "none"), found, _colours(objective, tries[best])[0])
+    best = min(distances, key=lambda driver: distances[driver] * PENALTIES.get(driver, 1.0))
+    return ColourChoice(tries[best], NAMES.get(best, "none"), distances, _colours(objective, tries[best])[0])
 
 
 def is_grey(pixels: NDArray[np.float32], mask: NDArray[np.bool_]) -> bool:

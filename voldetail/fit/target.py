@@ -71,30 +71,30 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
     zone = setup.photo.zone or default_zone(luminance(photo.pixels), mask, setup.photo.resolution)
     check_zone(zone, (rows, columns))
     factor = setup.photo.resolution / max(zone[2:])
-    pixels, used = _cut(photo.pixels, mask, zone, factor)
-    size = (used.shape[0], used.shape[1])
-    if not used.any():
+    pixels, inside = _cut(photo.pixels, mask, zone, factor)
+    size = (inside.shape[0], inside.shape[1])
+    if not inside.any():
         raise InputError("The mask leaves nothing of the zone to compare: use a larger mask or another --zone.")
     lamp = lamp_of(setup.light, luminance(photo.pixels))
     if lamp.position is not None and faces_camera(setup):
         view = view_of(setup.camera, (rows, columns), zone, setup.photo.resolution)
-        pixels = _with_falloff_of(lamp, pixels, used, view)
-    uneven = unevenness(pixels, used) if faces_camera(setup) and not setup.medium else None
+        pixels = _with_falloff_of(lamp, pixels, inside, view)
+    uneven = unevenness(pixels, inside) if faces_camera(setup) and not setup.medium else None
     if setup.photo.stationarize:
-        source, seen = pixels, used
+        source, seen = pixels, inside
         if setup.photo.zone is None and lamp.position is None:
             # A zone that the user drew says what is meant; else there is more of the surface beside it.
             source, seen = _cut(photo.pixels, mask, around(zone, (rows, columns), REACH), factor)
-        pixels, used = evened(source, seen, size, setup.seed), np.ones_like(used)
+        pixels, inside = evened(source, seen, size, setup.seed), np.ones_like(inside)
     light = luminance(pixels)
-    mean = pixels[used].mean(axis=0).astype(np.float64)
+    mean = pixels[inside].mean(axis=0).astype(np.float64)
     brightness = float(luminance(mean[None, None, :].astype(np.float32))[0, 0])
     tint = mean / brightness if brightness > BLACK else np.ones(3)
-    descriptor = describe(light, used, metric=setup.fit.metric)
+    descriptor = describe(light, inside, metric=setup.fit.metric)
     return Target(
-        photo=photo, pixels=pixels, luminance=light, mask=used, shape=(rows, columns), zone=zone,
+        photo=photo, pixels=pixels, luminance=light, mask=inside, shape=(rows, columns), zone=zone,
         lamp=lamp, tint=(float(tint[0]), float(tint[1]), float(tint[2])),
-        descriptor=descriptor, photo_halves=halves_apart(light, used, setup.fit.metric),
+        descriptor=descriptor, photo_halves=halves_apart(light, inside, setup.fit.metric),
         white=max(1.0, float(light.max())), unevenness=uneven,
     )
 

@@ -166,7 +166,7 @@ def _filters(shape: tuple[int, int], scale: int, frequency: float) -> tuple[tupl
     f = frequency / sigma
     sizes = [_size(n, 2 * PASSED / sigma) for n in shape]
     bias = np.exp(-2 * np.pi**2 * frequency**2) if frequency else 0.0
-    found = []
+    filters = []
     for angle in np.arange(ORIENTATIONS if frequency else 1) * np.pi / ORIENTATIONS:
         # Rows run downwards, angles counter-clockwise.
         wave = (-f * np.sin(angle), f * np.cos(angle))
@@ -174,9 +174,9 @@ def _filters(shape: tuple[int, int], scale: int, frequency: float) -> tuple[tupl
         y, x = ((k + np.arange(m)) / n for k, m, n in zip(first, sizes, shape, strict=True))
         transfer = _window(sigma, y - wave[0], x - wave[1]) - bias * _window(sigma, y, x)
         scaled = np.asarray(transfer / _integral(frequency), np.float32)
-        found.append((first[0] % shape[0], first[1] % shape[1], scaled))
+        filters.append((first[0] % shape[0], first[1] % shape[1], scaled))
     rows, columns = ((np.arange(m) * n) // m for n, m in zip(shape, sizes, strict=True))
-    return tuple(found), rows, columns
+    return tuple(filters), rows, columns
 
 
 def _window(sigma: float, y: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:

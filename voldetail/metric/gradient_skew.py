@@ -26,14 +26,14 @@ def basis(layers: Layers, /) -> Parts:
 def measure(layers: Layers, basis: Parts, /) -> Parts:
     """(Q(p) + Q(1 - p)) / 2 of each level, (4, 32): Q the quantile function of the differences at a lag in their own
     deviations. It is 0 where they are distributed alike up and down, and turns its sign with the picture."""
-    found: dict[str, Array] = {}
+    skews: dict[str, Array] = {}
     for level, (name, image) in enumerate(zip(LEVEL_NAMES, layers.images, strict=True)):
         stride = 1 if level == len(LEVEL_NAMES) - 1 else 2  # neighbours say nearly the same
         gaps = np.stack([_gap(image, rows // 2, columns // 2)[::stride, ::stride] for rows, columns in LAGS])
         functions = quantile_functions(layers.pick(gaps, level, SUPPORT, stride))
         shape = functions / spread(functions)
-        found[name] = (shape + shape[:, ::-1]) * np.float32(0.5)
-    return found
+        skews[name] = (shape + shape[:, ::-1]) * np.float32(0.5)
+    return skews
 
 
 def apart(a: Array, b: Array, basis: Array | None, /) -> Array:

@@ -29,16 +29,16 @@ def basis(layers: Layers, /) -> Parts:
 
 def measure(layers: Layers, basis: Parts, /) -> Parts:
     """Correlations of the magnitudes: (136,) within a level, (289,) with the next, (17 * lags,) in space."""
-    found: dict[str, Array] = {}
+    correlations: dict[str, Array] = {}
     maps = [_standardised(layers, level) for level in range(LEVELS)]
     for level, name in enumerate(LEVEL_NAMES):
         magnitudes, allowed = maps[level]
         upper = np.triu_indices(len(magnitudes), 1)
-        found[f"within {name}"] = _correlations(magnitudes, magnitudes, allowed)[upper]
+        correlations[f"within {name}"] = _correlations(magnitudes, magnitudes, allowed)[upper]
         if level + 1 < LEVELS:  # a coarsest level has too few displaced pairs, and no next level
             step = 1 if level else 2
             lags = ((rows // step, columns // step) for rows, columns in LAGS)
-            found[f"space {name}"] = np.concatenate([_lagged(magnitudes, allowed, *lag) for lag in lags])
+            correlations[f"space {name}"] = np.concatenate([_lagged(magnitudes, allowed, *lag) for lag in lags])
             coarse, coarse_allowed = maps[level + 1]
             # Window y is centred on pixel y + 3, and coarse pixel y + 3 lies on fine pixel 2 y + 6: fine window
             # 2 y + 3, at level 0 (every second window) its neighbour 2 (y + 1).
@@ -47,8 +47,8 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
             rows, columns = np.minimum(fine.shape[1:], coarse.shape[1:])
             both = allowed[first::step, first::step][:rows, :columns] & coarse_allowed[:rows, :columns]
             across = _correlations(fine[:, :rows, :columns], coarse[:, :rows, :columns], both)
-            found[f"across {name}"] = across.ravel()
-    return found
+            correlations[f"across {name}"] = across.ravel()
+    return correlations
 
 
 def apart(a: Array, b: Array, basis: Array | None, /) -> Array:

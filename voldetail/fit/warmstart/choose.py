@@ -81,12 +81,12 @@ def elevations_of(names: Sequence[str]) -> list[int]:
 
     Raises InputError for another.
     """
-    known = {f"relief-{at}": at for at in ELEVATIONS}
-    found: list[int] = []
+    by_name = {f"relief-{at}": at for at in ELEVATIONS}
+    elevations: list[int] = []
     for name in names:
         if not name.startswith("relief"):
             raise InputError(f"A library has either structures or reliefs; build one for {name[:60]!r} apart.")
-        if name != "relief" and name not in known:
-            raise InputError(f"There are no reliefs {name[:60]!r}; relief (all) and {', '.join(known)} are known.")
-        found += list(ELEVATIONS) if name == "relief" else [known[name]]
-    return list(dict.fromkeys(found))
+        if name != "relief" and name not in by_name:
+            raise InputError(f"There are no reliefs {name[:60]!r}; relief (all) and {', '.join(by_name)} are known.")
+        elevations += list(ELEVATIONS) if name == "relief" else [by_name[name]]
+    return list(dict.fromkeys(elevations))
