@@ -66,7 +66,7 @@ def _setup(light: str, solver: str, metric: str, evaluations: int | None) -> Any
     return setup_from(
         {
             "photo": {"path": "rendered.png", "resolution": SIDE, "zone": [0, 0, SIDE, SIDE]}, "light": light,
-            "fit": {"solver": solver, "metric": metric, "evaluations": evaluations},
+            "fit": {"solver": solver, "metric": metric, "evaluations": evaluations, "library": "none"},
         },
         "recovery",
     )

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from voldetail.cli.arguments import numbers, whole_numbers
-from voldetail.detail.parameters import nearest
 from voldetail.errors import InputError
 from voldetail.geometry.mesh_files import SUFFIXES
+from voldetail.records.nearest import nearest
 from voldetail.records.refusal import printable, shown
 from voldetail.setup.file import load_setup, setup_from_text
 from voldetail.setup.light import FORMS

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from voldetail.errors import InputError
-from voldetail.fit.lightguess import FLOOR, LightGuess, guess_light
+from voldetail.fit.lightguess import FLOOR, guess_light
 from voldetail.fit.target import mask_of
 from voldetail.fit.zone import check_zone
 from voldetail.image import Photo, luminance
+from voldetail.results import LightGuess
 from voldetail.setup.light import FORMS_GIVEN, direction_of
 from voldetail.setup.setup import Light, Setup
 

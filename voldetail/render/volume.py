@@ -1,7 +1,7 @@
 """A volumetric detail about a proxy, as the fit sees it: baked to a grid and marched.
 
-The proxy's density is shifted by the relief (scene.hypertexture). A solid detail is opaque within about a cell and shaded
-on its gradient; a medium scatters (scene.medium). The plane that fills a photo becomes a slab of solid matter, or a sheet:
+The proxy's density is shifted by the relief (field.hypertexture). A solid detail is opaque within about a cell and shaded
+on its gradient; a medium scatters (field.medium). The plane that fills a photo becomes a slab of solid matter, or a sheet:
 matter on both sides of the plane z = 0, between which the background may show.
 """
 

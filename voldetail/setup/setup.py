@@ -12,8 +12,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from voldetail.detail.parameters import declared, nearest, parameter
+from voldetail.detail.parameters import declared, parameter
 from voldetail.detail.record import LARGEST_SEED, Record
+from voldetail.records.nearest import nearest
 from voldetail.setup.light import FURTHEST, Length, Light, Vector
 from voldetail.setup.shapes import SHAPES, ShapeKind, ShapeRow
 
