@@ -16,7 +16,6 @@ from voldetail.detail import Detail, load_detail, save_detail
 from voldetail.errors import InputError, VoldetailError
 from voldetail.fit import FitResult, Progress
 from voldetail.fit import fit as fit_setup
-from voldetail.fit.warmstart import starts_from
 from voldetail.image import load_photo, luminance, save_image
 from voldetail.metric import Descriptor, describe, distance, distance_by_level
 from voldetail.report import write_report
@@ -65,10 +64,10 @@ def fit(
     used; Ctrl-C ends the search with the best so far.
     """
     if isinstance(photo, Setup):
-        return fit_setup(photo, on_progress=on_progress, starts_for=starts_from)
+        return fit_setup(photo, on_progress=on_progress)
     if light is None:
         raise InputError('A light is needed: "AZ,EL" in degrees, "x,y,z", "flash", "point:x,y,z" or "auto".')
     source: dict[str, Any] = {"path": str(photo)}
     source |= {key: options.pop(key) for key in ("zone", "resolution", "encoding") if key in options}
     setup = setup_from({"photo": source, "light": light, **options}, "the call of fit")
-    return fit_setup(setup, on_progress=on_progress, starts_for=starts_from)
+    return fit_setup(setup, on_progress=on_progress)

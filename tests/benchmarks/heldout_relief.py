@@ -138,7 +138,7 @@ def run(scan: Scan, evaluations: int | None, sheets: Path | None) -> dict[str, A
     setup = setup_from(
         {
             "photo": {"path": "rendered.png", "resolution": SIDE, "zone": [0, 0, SIDE, SIDE]}, "light": LIGHT,
-            "fit": {"evaluations": evaluations},
+            "fit": {"evaluations": evaluations, "library": "none"},
         },
         scan.name,
     )

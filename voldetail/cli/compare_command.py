@@ -52,10 +52,9 @@ def compare(
     Pictures need not have the same size, but a texture has to have the same scale in both, in pixels. As a
     yardstick, the left half of A is compared with its right half.
     """
-    from voldetail.metric import METRICS, describe, distance_by_level
+    from voldetail.metric import describe, distance_by_level, metric_named
 
-    if metric not in METRICS:
-        raise InputError(f"There is no metric {metric!r}; use one of {', '.join(METRICS)}.")
+    metric = metric_named(metric)
     a, b = (_read(name, mask, resolution) for name in (first, second))
     if mask is not None and a.light.shape != b.light.shape:
         raise InputError(f"With --mask, {first} and {second} have to have the same size.")

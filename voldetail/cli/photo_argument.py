@@ -15,7 +15,7 @@ def photo_path(name: str) -> Path:
         return Path(name)
     from importlib.util import find_spec
 
-    from voldetail.detail.parameters import nearest
+    from voldetail.records.nearest import nearest
 
     word = name.removeprefix(SKIMAGE_PREFIX)
     found = find_spec("skimage")
