@@ -7,9 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from from_code import bibliography, commands, diagram, interface, papers, records, rooms
+from from_code import bibliography, commands, diagram, interface, kinds, papers, records, rooms
 from voldetail import __version__, api
 from voldetail.detail import PARAMETERS
+from voldetail.metric import METRICS
+from voldetail.setup.lights.table import LIGHTS
+from voldetail.setup.shapes import SHAPES
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in (ROOT / "docs").rglob("*.md")}
@@ -47,6 +50,12 @@ def test_parameters_and_records_are_whole() -> None:
     assert records.layout_page().startswith("```json")
 
 
+def test_kinds_have_a_row_each_with_a_sentence() -> None:
+    for page, names in ((kinds.lights_page(), LIGHTS), (kinds.shapes_page(), SHAPES), (kinds.metrics_page(), METRICS)):
+        assert all(f"`{name}`" in page for name in names)
+        assert "|  |\n" not in page
+
+
 def test_every_room_says_what_it_holds() -> None:
     assert [room.name for room in rooms.rooms().values() if not room.sentence] == []
 
@@ -56,6 +65,7 @@ def test_the_picture_has_every_room_and_lines_downwards() -> None:
     picture = diagram.diagram()
     assert all(f">{name}<" in picture or f" {name}" in picture for name in every)
     uses = rooms.downward(every)
+    assert uses == {name: set(room.uses) for name, room in every.items()}  # else a circle was cut
     for name, below in rooms.needed(uses).items():
         assert below <= every[name].uses
         assert all(rooms.height(name, uses) > rooms.height(other, uses) for other in below)
