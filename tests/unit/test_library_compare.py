@@ -48,7 +48,7 @@ def test_the_vector_holds_what_the_metric_measures_with_its_weights() -> None:
     by_scale = [np.sum((weights() * (u - v).astype(float))[scales() == scale] ** 2) for scale in range(gabor.SCALES)]
     for scale, found in enumerate(by_scale):
         part = f"scale {scale}"
-        assert found == pytest.approx(gabor.compare(a[part], b[part], gabor.weights()[part]), rel=1e-5)
+        assert found == pytest.approx(float(gabor.apart(a[part], b[part], gabor.weights()[part])), rel=1e-5)
 
 
 def test_the_distance_of_two_gaussians_is_their_wasserstein_distance() -> None:
