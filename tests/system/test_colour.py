@@ -28,7 +28,8 @@ from voldetail.image import Photo, luminance, save_image
 from voldetail.render.build import build
 from voldetail.render.plugins.colour import colour_dict
 from voldetail.render.unit_components import components
-from voldetail.setup.lamp import Lamp, lamp_of
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import lamp_of
 from voldetail.setup.setup import FitSettings, Light, PhotoSetup, Setup
 from voldetail.texture import analyse, colour_at, picture
 

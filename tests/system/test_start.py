@@ -28,7 +28,7 @@ from voldetail.render.build import build
 from voldetail.render.unit_components import components
 from voldetail.results import Target
 from voldetail.setup.file import setup_from
-from voldetail.setup.lamp import lamp_of
+from voldetail.setup.light import lamp_of
 from voldetail.setup.setup import Setup
 from voldetail.setup.view import view_of
 

@@ -20,8 +20,7 @@ from voldetail.fit.target import make_target
 from voldetail.image import Photo, load_photo, luminance
 from voldetail.render.build import build
 from voldetail.render.unit_components import components
-from voldetail.setup.lamp import lamp_of
-from voldetail.setup.light import parse_light
+from voldetail.setup.light import lamp_of, parse_light
 from voldetail.setup.setup import FitSettings, PhotoSetup, Setup
 
 SIDE = 64

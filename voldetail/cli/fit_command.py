@@ -11,6 +11,7 @@ import typer
 from voldetail.cli.console import output, remarks
 from voldetail.cli.fit_folder import DETAIL, FIT, FitFolder
 from voldetail.cli.threads import use_threads
+from voldetail.setup.shapes import SHAPE_WORDS
 
 if TYPE_CHECKING:
     from voldetail.results import FitResult
@@ -33,7 +34,7 @@ def fit(
     proxy: Annotated[
         _Text,
         typer.Option(
-            help="The shape in the photo: plane, sphere, ellipsoid, box, cylinder or a mesh file.",
+            help=f"The shape in the photo: {SHAPE_WORDS} or a mesh file.",
             rich_help_panel=SCENE,
         ),
     ] = None,

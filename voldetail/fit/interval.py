@@ -53,10 +53,10 @@ def amplitude_interval(objective: Objective, detail: Detail, seeds: Sequence[int
 
 
 def _lamps(lamp: Lamp) -> Iterator[Lamp]:
-    if lamp.direction is None:
+    if lamp.near:
         yield lamp
         return
-    azimuth, elevation = angles_of(lamp.direction)
+    azimuth, elevation = angles_of(lamp.source)
     for step in ELEVATIONS:
         turned = min(max(elevation + step, 1.0), 90.0)
         yield lamp if step == 0.0 else replace(lamp, direction=direction_of(azimuth, turned))

@@ -16,7 +16,8 @@ from voldetail.image import Photo, load_mask, load_photo, luminance, resize, res
 from voldetail.metric import describe, distance
 from voldetail.render.build import faces_camera
 from voldetail.results.target import Target
-from voldetail.setup.lamp import Lamp, lamp_of
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import lamp_of
 from voldetail.setup.setup import SKIMAGE_PREFIX, Setup
 from voldetail.setup.view import View, Zone, view_of
 
@@ -76,13 +77,13 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
     if not inside.any():
         raise InputError("The mask leaves nothing of the zone to compare: use a larger mask or another --zone.")
     lamp = lamp_of(setup.light, luminance(photo.pixels))
-    if lamp.position is not None and faces_camera(setup):
+    if lamp.near and faces_camera(setup):
         view = view_of(setup.camera, (rows, columns), zone, setup.photo.resolution)
         pixels = _with_falloff_of(lamp, pixels, inside, view)
     uneven = unevenness(pixels, inside) if faces_camera(setup) and not setup.medium else None
     if setup.photo.stationarize:
         source, seen = pixels, inside
-        if setup.photo.zone is None and lamp.position is None:
+        if setup.photo.zone is None and not lamp.near:
             # A zone that the user drew says what is meant; else there is more of the surface beside it.
             source, seen = _cut(photo.pixels, mask, around(zone, (rows, columns), REACH), factor)
         pixels, inside = evened(source, seen, size, setup.seed), np.ones_like(inside)

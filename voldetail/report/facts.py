@@ -5,34 +5,12 @@ from __future__ import annotations
 from voldetail.detail import parameter
 from voldetail.report.verdict import number
 from voldetail.results import EVEN_ENOUGH, AmplitudeInterval, FitResult
-from voldetail.setup.light import angles_of
 from voldetail.setup.setup import Light, Setup
-
-_SIDES = ("the right", "the upper right", "above", "the upper left", "the left", "the lower left", "below",
-          "the lower right")  # fmt: skip
-HEAD_ON = 80.0  # degrees of elevation from which a side can no longer be told
 
 
 def light_words(light: Light) -> str:
     """The light in words, angles in degrees."""
-    if light.kind == "flash":
-        foot = ""
-        if light.foot:
-            left, top = (100 * v for v in light.foot)
-            foot = f", nearest {left:.0f} % from the left and {top:.0f} % from the top"
-        return f"a flash {light.height:.3g} photo widths in front of it{foot}"
-    if light.position:
-        return (
-            "a lamp at "
-            + ", ".join(f"{v:.3g}" for v in light.position)
-            + " scene units (right, up, to the viewer)"
-        )
-    assert light.direction is not None
-    azimuth, elevation = angles_of(light.direction)
-    if elevation > HEAD_ON:
-        return f"from the viewer's side, {elevation:.0f} degrees above the picture"
-    side = _SIDES[round(azimuth / 45) % 8]
-    return f"from {side} (azimuth {azimuth:.0f} degrees), {elevation:.0f} degrees above the picture"
+    return light.row.words(light)
 
 
 def duration(seconds: float) -> str:
@@ -72,7 +50,7 @@ def facts(result: FitResult) -> list[tuple[str, str]]:
 def overlay_words(setup: Setup) -> str:
     """What is drawn over the whole photo."""
     words = "The whole photo: the zone framed in white, what is not used dark"
-    flat = setup.proxy.kind == "plane" and setup.camera.kind == "orthographic"
+    flat = setup.proxy.row.flat and setup.camera.kind == "orthographic"
     # A plane that faces the viewer fills the photo and so has no outline in it.
     filled = flat and setup.proxy.size is None and not any(setup.proxy.rotation)
     return words + ("; the proxy is a plane that fills it" if filled else ", the proxy's outline orange")

@@ -33,11 +33,8 @@ class Turned:
 
 def direction_at_zone(lamp: Lamp, view: View) -> tuple[float, float]:
     """Return azimuth and elevation, radians, of the light at the middle of the zone; a near one is taken for distant."""
-    if lamp.position is None:
-        assert lamp.direction is not None
-        x, y, z = lamp.direction
-    else:
-        x, y, z = lamp.position
+    x, y, z = lamp.source
+    if lamp.near:
         x, y = x - 0.5 * (view.left + view.right), y - 0.5 * (view.bottom + view.top)
     return math.atan2(y, x), math.atan2(z, math.hypot(x, y))
 

@@ -16,7 +16,7 @@ from voldetail.metric.vector import combined_vector
 from voldetail.render.build import build
 from voldetail.render.unit_components import Components, components
 from voldetail.setup.file import setup_from
-from voldetail.setup.lamp import lamp_of
+from voldetail.setup.light import lamp_of
 
 AMBIENT, DIFFUSE = 0.3, 0.6
 """Ka and Kd of the pictures. Only their ratio counts, and the fit solves for both: shadows half filled were ordered more like the
