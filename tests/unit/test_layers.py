@@ -25,7 +25,7 @@ ALLOWED: dict[str, set[str]] = {
     "render": {"field", "geometry", "setup", "texture", "detail", "image", "backend"},
     "field": {"geometry", "setup", "noise", "texture", "detail", "image", "backend"},
     "geometry": {"setup", "detail", "records", "image", "backend"},
-    "setup": {"detail", "records", "image"},
+    "setup": {"detail", "records", "backend"},
     "stationary": {"image"},
     "texture": {"noise", "detail", "records", "image"},
     "metric": {"image"},
@@ -65,9 +65,10 @@ def imports(tree: ast.AST, package: str) -> Iterator[str]:
         elif isinstance(node, ast.ImportFrom):
             base = ".".join(package.split(".")[: -node.level + 1 or None]) + "." if node.level else ""
             module = (base + (node.module or "")).rstrip(".")
-            # "from voldetail import x" may name a module of the package.
+            # "from voldetail import x" may name a module of the package, and "from voldetail.noise import x" one of the room.
             for alias in node.names:
-                yield f"{module}.{alias.name}" if module == "voldetail" else module
+                inner = PACKAGE.parent.joinpath(*module.split("."), f"{alias.name}.py").exists()
+                yield f"{module}.{alias.name}" if module == "voldetail" or inner else module
         elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("import_module") and node.args:
             argument = node.args[0]
             yield str(argument.value) if isinstance(argument, ast.Constant) else "?"
@@ -110,6 +111,34 @@ def broken(root: Path) -> list[str]:
 def test_the_package_keeps_the_rules() -> None:
     assert (PACKAGE / "backend.py").exists()
     assert broken(PACKAGE) == []
+
+
+def circles(root: Path) -> list[str]:
+    """Return every file of the package that imports itself by way of others, at any depth of the code."""
+    modules = {}
+    for path in root.rglob("*.py"):
+        name = ".".join(["voldetail", *path.relative_to(root).with_suffix("").parts]).removesuffix(".__init__")
+        package = ".".join(["voldetail", *path.relative_to(root).parts[:-1]])
+        modules[name] = set(imports(ast.parse(path.read_text(encoding="utf-8")), package))
+    reached = {name: {other for other in named if other in modules and other != name} for name, named in modules.items()}
+    while True:
+        further = {name: others.union(*(reached[other] for other in others)) for name, others in reached.items()}
+        if further == reached:
+            return sorted(name for name, others in reached.items() if name in others)
+        reached = further
+
+
+def test_no_file_imports_itself_by_way_of_others() -> None:
+    assert circles(PACKAGE) == []
+
+
+def test_a_circle_is_seen(tmp_path: Path) -> None:
+    (tmp_path / "noise").mkdir()
+    (tmp_path / "noise" / "a.py").write_text("from voldetail.noise.b import f")
+    (tmp_path / "noise" / "b.py").write_text("def f():\n    from voldetail.noise.c import g")
+    (tmp_path / "noise" / "c.py").write_text("import voldetail.noise.a")
+    (tmp_path / "noise" / "d.py").write_text("import voldetail.noise.a")
+    assert circles(tmp_path) == ["voldetail.noise.a", "voldetail.noise.b", "voldetail.noise.c"]
 
 
 def test_every_part_is_in_the_table() -> None:
