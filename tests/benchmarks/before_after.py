@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from tests.benchmarks.photographs import PHOTOGRAPHS, Photograph, is_there, setup_of
-from tests.benchmarks.relit import Picture, look, markdown, save_sheet
+from tests.benchmarks.relit import Picture, lit_picture, markdown, save_sheet
 from tests.benchmarks.yardsticks import reference
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail, load_detail, save_detail
@@ -37,7 +37,7 @@ def picture_of(detail: Detail, setup: Setup, target: Target) -> Picture:
     surface = build(setup, target.shape, target.zone)
     assert isinstance(surface, HeightField)
     surface.update(detail)
-    return np.minimum(look(surface, target.lamp, detail.reflectance), target.white).astype(np.float32)
+    return np.minimum(lit_picture(surface, target.lamp, detail.reflectance), target.white).astype(np.float32)
 
 
 def distances(picture: Picture, target: Target) -> dict[str, float]:

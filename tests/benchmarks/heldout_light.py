@@ -32,7 +32,7 @@ from tests.benchmarks.relit import (
     Yardstick,
     exposed,
     heights_of,
-    look,
+    lit_picture,
     markdown,
     raise_by_brightness,
     reflectance_under,
@@ -208,9 +208,9 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
         seen = make_target(setup_of(shot.light, target.zone), shot.load())
         lamp = Lamp(seen.lamp.direction, seen.lamp.position, seen.lamp.strength, shot.at_camera)
         pictures = {
-            "fit": look(surface, lamp, detail.reflectance),
+            "fit": lit_picture(surface, lamp, detail.reflectance),
             "flat": target.pixels * (on_plane(lamp) / shading)[..., None],
-            "brightness": look(bumps, lamp, bumps_reflectance),
+            "brightness": lit_picture(bumps, lamp, bumps_reflectance),
         }
         yardstick = Yardstick(seen.luminance, seen.mask, METRICS)
         own_side, ratios = side(seen.luminance, seen.mask), {}

@@ -46,9 +46,8 @@ class Yardstick:
         self.mask = mask
         self._references = {metric: reference(luminance, metric, mask) for metric in metrics}
         half = luminance.shape[1] // 2
-        (one, one_mask), (other, other_mask) = (
-            [np.ascontiguousarray(p[:, part]) for p in (luminance, mask)] for part in (slice(None, half), slice(-half, None))
-        )
+        one, other = np.ascontiguousarray(luminance[:, :half]), np.ascontiguousarray(luminance[:, -half:])
+        one_mask, other_mask = np.ascontiguousarray(mask[:, :half]), np.ascontiguousarray(mask[:, -half:])
         self.halves = {metric: reference(one, metric, one_mask).distance(other, other_mask) for metric in metrics}
 
     def ratios(self, luminance: Picture) -> dict[str, float]:

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from rich.table import Table
 
 from voldetail.cli.console import output
-from voldetail.cli.photo_argument import photo_path
 from voldetail.errors import InputError
 
 if TYPE_CHECKING:
@@ -72,12 +71,10 @@ def compare(
 
 
 def _read(name: str, mask: Path | None, resolution: int | None) -> _Picture:
-    from voldetail.image import load_mask, load_photo, luminance, resize, resize_mask
+    from voldetail.image import load_masked, luminance, resize, resize_mask
 
-    photo = load_photo(photo_path(name))
-    used = load_mask(mask, photo.pixels.shape[:2]) if mask is not None else None
-    if photo.opaque is not None:
-        used = photo.opaque if used is None else used & photo.opaque
+    photo = load_masked(name, mask)
+    used = photo.opaque
     light = luminance(photo.pixels)
     rows, columns = light.shape
     if resolution is not None and resolution < max(rows, columns):

@@ -13,7 +13,6 @@ from rich.table import Table
 from voldetail.cli.arguments import whole_numbers
 from voldetail.cli.console import output, remarks
 from voldetail.cli.outputs import check_file
-from voldetail.cli.photo_argument import photo_path
 from voldetail.errors import InputError
 
 if TYPE_CHECKING:
@@ -85,9 +84,10 @@ def retrieve(
         write_text(as_json, json.dumps(_record(photo, asked, found, novelty, said), indent=2) + "\n")
     if texture is not None:
         from voldetail.detail.texture_file import save_texture
+        from voldetail.image.examples import picture_path
         from voldetail.library import texture_of
 
-        name = photo_path(photo)
+        name = picture_path(photo)
         save_texture(texture, texture_of(found.answers[0], (asked.photo.shape[0], asked.photo.shape[1]), name.name))
     if sheet is not None:
         _write_sheet(sheet, photo, asked, found.answers)
@@ -134,19 +134,15 @@ def _chosen(groups: Groups, names: list[str] | None) -> Groups:
 
 
 def _query(photo: str, mask: Path | None, zone: str | None, scale: float | None) -> Query:
-    from voldetail.image import load_mask, load_photo
+    from voldetail.image import load_masked
     from voldetail.library import query
 
-    loaded = load_photo(photo_path(photo))
-    used = loaded.opaque
-    if mask is not None:
-        white = load_mask(mask, (loaded.pixels.shape[0], loaded.pixels.shape[1]))
-        used = white if used is None else white & used
+    loaded = load_masked(photo, mask)
     part = None
     if zone is not None:
         x, y, width, height = whole_numbers(zone, 4, "--zone", "X,Y,WIDTH,HEIGHT in pixels")
         part = (x, y, width, height)
-    return query(loaded.pixels, used, zone=part, scale=scale)
+    return query(loaded.pixels, loaded.opaque, zone=part, scale=scale)
 
 
 def _print(found: Ranking, asked: Query, said: list[str]) -> None:

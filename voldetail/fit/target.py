@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +11,13 @@ from scipy.ndimage import gaussian_filter
 from voldetail.errors import InputError
 from voldetail.fit.evenness import evened, unevenness
 from voldetail.fit.zone import around, check_zone, default_zone
-from voldetail.image import Photo, load_mask, load_photo, luminance, resize, resize_mask
+from voldetail.image import Photo, as_photo, luminance, resize, resize_mask, used_of, with_mask
 from voldetail.metric import describe, distance
 from voldetail.render.build import faces_camera
 from voldetail.results.target import Target
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.light import lamp_of
-from voldetail.setup.setup import SKIMAGE_PREFIX, Setup
+from voldetail.setup.setup import Setup
 from voldetail.setup.view import View, Zone, view_of
 
 SLOW_SHADING = 0.12
@@ -45,20 +44,12 @@ def reduced(target: Target, metric: str, size: tuple[int, int]) -> Target:
 
 def load_photo_of(setup: Setup) -> Photo:
     """Return the photo of a Setup: a file, or one that scikit-image ships."""
-    path = setup.photo.path
-    if path.startswith(SKIMAGE_PREFIX):
-        import skimage
-
-        name = path.removeprefix(SKIMAGE_PREFIX)
-        return load_photo(Path(skimage.__file__).parent / "data" / f"{name}.png", encoding=setup.photo.encoding)
-    return load_photo(path, encoding=setup.photo.encoding)
+    return as_photo(setup.photo.path, encoding=setup.photo.encoding)
 
 
 def mask_of(setup: Setup, photo: Photo) -> NDArray[np.bool_]:
     """Return which pixels (H, W) of the whole photo are used: the mask's, where they are opaque."""
-    rows, columns = photo.pixels.shape[:2]
-    mask = load_mask(setup.mask, (rows, columns)) if setup.mask else np.ones((rows, columns), dtype=bool)
-    return mask if photo.opaque is None else mask & photo.opaque
+    return used_of(with_mask(photo, setup.mask))
 
 
 def make_target(setup: Setup, photo: Photo | None = None) -> Target:

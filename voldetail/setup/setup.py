@@ -14,14 +14,13 @@ from pydantic import Field, model_validator
 
 from voldetail.detail.parameters import declared, parameter
 from voldetail.detail.record import LARGEST_SEED, Record
+from voldetail.image.examples import NAMES, PREFIX
 from voldetail.records.nearest import nearest
 from voldetail.setup.light import FURTHEST, Length, Light, Vector
 from voldetail.setup.shapes import SHAPES, ShapeKind, ShapeRow
 
 __all__ = ["CameraSetup", "FitSettings", "Light", "PhotoSetup", "ProxySetup", "Setup", "Vector"]
 
-SKIMAGE_PREFIX = "skimage:"
-SKIMAGE_PHOTOS = ("gravel", "grass", "brick")  # the photographs of real surfaces that scikit-image ships
 
 SMALLEST_ZONE = 32  # pixels: the metric's 8-pixel window on the third level of its pyramid, 8 * 2**2
 DEFAULT_FIELD_OF_VIEW = 40.0  # degrees, about a 50 mm lens on 35 mm film
@@ -61,7 +60,7 @@ class PhotoSetup(Record):
     @property
     def skimage(self) -> str | None:
         """The name of the scikit-image photograph, or None for a file."""
-        return self.path.removeprefix(SKIMAGE_PREFIX) if self.path.startswith(SKIMAGE_PREFIX) else None
+        return self.path.removeprefix(PREFIX) if self.path.startswith(PREFIX) else None
 
     @property
     def name(self) -> str:
@@ -70,9 +69,9 @@ class PhotoSetup(Record):
 
     @model_validator(mode="after")
     def _usable(self) -> PhotoSetup:
-        if self.skimage is not None and self.skimage not in SKIMAGE_PHOTOS:
+        if self.skimage is not None and self.skimage not in NAMES:
             raise ValueError(
-                f"there is no photo {self.path[:60]!r}; {nearest(self.skimage, list(SKIMAGE_PHOTOS))}"
+                f"there is no photo {self.path[:60]!r}; {nearest(self.skimage, list(NAMES))}"
             )
         if self.zone and min(self.zone[2:]) < SMALLEST_ZONE:
             size = f"{self.zone[2]} x {self.zone[3]}"
