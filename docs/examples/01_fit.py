@@ -24,10 +24,10 @@ print(f"M = {result.distance:.2f} after {result.evaluations} pictures; {result.s
 import matplotlib.pyplot as plt
 import numpy as np
 
-from voldetail.api import parse_light, render
+from voldetail.api import render
 from voldetail.image import resize, to_srgb
 
-sphere = render(result.detail, "sphere", light=parse_light("160,35"), size=(300, 300), background=1.0)
+sphere = render(result.detail, "sphere", light="160,35", size=(300, 300), background=1.0)
 photo, fitted = (resize(np.asarray(picture), (300, 300)) for picture in (result.target.pixels, result.coloured))
 
 plt.figure(figsize=(9, 3.2), layout="constrained")

@@ -10,7 +10,7 @@ Details need no photo: any of their numbers can be set by hand. Nine planes unde
 
 import matplotlib.pyplot as plt
 
-from voldetail.api import Detail, parse_light, render
+from voldetail.api import Detail, render
 from voldetail.detail import with_values
 from voldetail.image import to_srgb
 
@@ -28,10 +28,9 @@ CHOICES = {
     "plates": {"noise.cell_height": 1.0, "noise.cell_tilt": 1.0, "noise.bevel": 0.1, "noise.weights": (1.0, -1.0, 0.0)},
 }
 
-light = parse_light("135,40")
 _, axes = plt.subplots(3, 3, figsize=(9, 9.6), layout="constrained")
 for axis, (title, values) in zip(axes.flat, CHOICES.items(), strict=True):
     detail = with_values(Detail(), EVERY | values)
-    axis.imshow(to_srgb(render(detail, "plane", light=light, size=(160, 160))).clip(0, 1))
+    axis.imshow(to_srgb(render(detail, "plane", light="135,40", size=(160, 160))).clip(0, 1))
     axis.set_title(title)
     axis.set_axis_off()

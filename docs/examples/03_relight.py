@@ -11,7 +11,7 @@ One detail on four shapes, and a light that goes round it.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from voldetail.api import Detail, parse_light, relight, render
+from voldetail.api import Detail, relight, render
 from voldetail.detail import with_values
 from voldetail.image import to_srgb
 
@@ -32,10 +32,9 @@ def in_a_row(pictures):
 # %%
 # The relief goes along the normal of whatever shape it is put on: the solid noise needs no texture coordinates.
 
-light = parse_light("150,40")
-turns = {"plane": (0.0, 0.0, 0.0), "sphere": (0.0, 0.0, 0.0), "cylinder": (20.0, 0.0, 15.0), "box": (25.0, -35.0, 0.0)}
+turns = {"sphere": (0.0, 0.0, 0.0), "cylinder": (20.0, 0.0, 15.0), "box": (25.0, -35.0, 0.0), "torus": (-50.0, 0.0, 20.0)}
 in_a_row([
-    render(stones, shape, light=light, size=(160, 160), rotation=turn, background=1.0) for shape, turn in turns.items()
+    render(stones, shape, light="150,40", size=(160, 160), rotation=turn, background=1.0) for shape, turn in turns.items()
 ])  # fmt: skip
 
 # %%
@@ -43,3 +42,10 @@ in_a_row([
 
 frames = relight(stones, "sphere", azimuths=(0, 90, 180, 270), elevations=(25,), size=(160, 160), background=1.0)
 in_a_row([picture for _, _, picture in frames])
+
+# %%
+# A work light near the surface: a cone of 20 degrees to each side, aimed at the middle.
+
+in_a_row([
+    render(stones, "plane", light=light, size=(160, 160)) for light in ("flash", "point:-1,1,0.7", "spot:-1.2,1.2,1.2@0,0,0,20")
+])  # fmt: skip

@@ -12,10 +12,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 import skimage
 
-from voldetail.image import to_linear, to_srgb
+from voldetail.api import load_photo
+from voldetail.image import to_srgb
 from voldetail.texture import analyse, edit, morph, picture
 
-photo = to_linear(skimage.data.immunohistochemistry()[:256, :256] / 255.0).astype(np.float32)
+photo = load_photo(skimage.data.immunohistochemistry()).pixels[:256, :256]
 texture = analyse(photo, name="tissue", directed=False)
 
 
@@ -44,6 +45,5 @@ in_a_row(
 # %%
 # Halfway between the tissue and gravel.
 
-stones = np.repeat(to_linear(skimage.data.gravel()[:256, :256, None] / 255.0), 3, axis=2)
-gravel = analyse(stones, name="gravel", directed=False)
+gravel = analyse(load_photo("skimage:gravel").pixels[:256, :256], name="gravel", directed=False)
 in_a_row(*(picture(morph(texture, gravel, t), (256, 256)) for t in (0.25, 0.5, 0.75)))

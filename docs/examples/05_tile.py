@@ -10,14 +10,14 @@ How even a photo is, and a tile of it without seams.
 
 import matplotlib.pyplot as plt
 import numpy as np
-import skimage
 
-from voldetail.image import resize, to_linear, to_srgb
+from voldetail.api import load_photo
+from voldetail.image import resize, to_srgb
 from voldetail.stationary.measure import stationarity
 from voldetail.stationary.tile import stationarize
 
-gravel = to_linear(skimage.data.gravel() / 255.0).astype(np.float32)
-photo = resize(np.repeat(gravel[..., None], 3, axis=2), (256, 256)) * np.linspace(0.2, 1.0, 256, dtype=np.float32)[None, :, None]
+gravel = resize(load_photo("skimage:gravel").pixels, (256, 256))
+photo = gravel * np.linspace(0.2, 1.0, 256, dtype=np.float32)[None, :, None]
 
 tile = stationarize(photo, size=128)
 before, after = stationarity(photo).value, stationarity(tile.tile, toroidal=True).value

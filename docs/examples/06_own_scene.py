@@ -13,13 +13,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 import skimage
 
+from voldetail.api import load_photo
 from voldetail.backend import mitsuba
-from voldetail.image import to_linear, to_srgb
+from voldetail.image import to_srgb
 from voldetail.render.plugins.colour import colour_dict
 from voldetail.texture import analyse
 
 mi = mitsuba()
-tissue = analyse(to_linear(skimage.data.immunohistochemistry()[:256, :256] / 255.0).astype(np.float32), name="tissue")
+tissue = analyse(load_photo(skimage.data.immunohistochemistry()).pixels[:256, :256], name="tissue")
 
 scene = mi.load_dict({
     "type": "scene",

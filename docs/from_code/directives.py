@@ -12,7 +12,7 @@ from sphinx.util.docutils import SphinxDirective
 from from_code.commands import command_page
 from from_code.diagram import diagram
 from from_code.interface import interface_page, short_arrays
-from from_code.kinds import lights_page, metrics_page, shapes_page
+from from_code.kinds import formats_page, lights_page, metrics_page, shapes_page
 from from_code.papers import other_papers_page, papers_page
 from from_code.records import layout_page, parameter_page, record_page
 from from_code.rooms import rooms_page
@@ -30,6 +30,7 @@ class Written(SphinxDirective):
         "detail-layout": lambda _: layout_page(),
         "rooms": lambda _: rooms_page(),
         "interface": interface_page,
+        "formats": lambda _: formats_page(),
         "lights": lambda _: lights_page(),
         "shapes": lambda _: shapes_page(),
         "metrics": lambda _: metrics_page(),

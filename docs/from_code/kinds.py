@@ -6,6 +6,7 @@ import inspect
 from importlib import import_module
 
 from from_code.markdown import code, plain, table
+from voldetail.export import FORMATS
 from voldetail.metric.descriptor import METRICS
 from voldetail.metric.ingredients import COMBINED, INGREDIENTS
 from voldetail.setup.lights.table import LIGHTS
@@ -25,6 +26,11 @@ def shapes_page() -> str:
         shape = import_module(f"voldetail.geometry.primitives.{kind}").PRIMITIVE
         rows.append((code(kind), " x ".join(f"{side:g}" for side in row.size), plain(sentence_of(shape))))
     return table(["kind", "size, scene units", "shape"], rows)
+
+
+def formats_page() -> str:
+    """Return the formats that a detail on a shape is written in."""
+    return table(["suffix", "what is in the file"], [(" ".join(map(code, row.suffixes)), plain(row.what)) for row in FORMATS])
 
 
 def metrics_page() -> str:

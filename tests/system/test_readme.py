@@ -16,6 +16,7 @@ GRAVEL = ROOT / "results" / "fits" / "gravel" / "detail.json"
 PROMISED = {
     "fit": ("brick/report.html", "brick/sheet.png", "scene/detail.json", "lawn.png"),
     "volume": ("tufts.png", "turf.png", "turf.vol", "on-turf.png"),
+    "bake": ("ring.ply",),
     "render": ("cylinder.png", "plane.exr", "turn/sheet.png"),
     "texture": ("wider.png", "ball.png", "softer.json", "morph/step_003.png"),
     "tiles": ("heat.png", "tile.png", "even/detail.json"),

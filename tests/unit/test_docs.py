@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from from_code import bibliography, commands, diagram, interface, kinds, papers, records, rooms
 from voldetail import __version__, api
 from voldetail.detail import PARAMETERS
+from voldetail.export import suffixes
 from voldetail.metric import METRICS
 from voldetail.setup.lights.table import LIGHTS
 from voldetail.setup.shapes import SHAPES
@@ -50,10 +52,18 @@ def test_parameters_and_records_are_whole() -> None:
     assert records.layout_page().startswith("```json")
 
 
-def test_kinds_have_a_row_each_with_a_sentence() -> None:
-    for page, names in ((kinds.lights_page(), LIGHTS), (kinds.shapes_page(), SHAPES), (kinds.metrics_page(), METRICS)):
-        assert all(f"`{name}`" in page for name in names)
-        assert "|  |\n" not in page
+@pytest.mark.parametrize(
+    ("page", "names"),
+    [
+        (kinds.lights_page, tuple(LIGHTS)),
+        (kinds.shapes_page, tuple(SHAPES)),
+        (kinds.metrics_page, METRICS),
+        (kinds.formats_page, suffixes()),
+    ],
+)
+def test_kinds_have_a_row_each_with_a_sentence(page: Callable[[], str], names: tuple[str, ...]) -> None:
+    assert all(f"`{name}`" in page() for name in names)
+    assert "|  |\n" not in page()
 
 
 def test_every_room_says_what_it_holds() -> None:
@@ -129,7 +139,3 @@ def test_the_interface_is_whole() -> None:
 def test_arrays_in_signatures_are_as_in_the_source() -> None:
     long = "(a: ~numpy.ndarray[tuple[~typing.Any, ...], ~numpy.dtype[~numpy.float32]])"
     assert interface.short_arrays(long) == "(a: NDArray[float32])"
-
-
-def test_every_public_name_of_the_interface_has_a_docstring() -> None:
-    assert [name for name in api.__all__ if not (getattr(api, name).__doc__ or "").strip()] == []
