@@ -13,7 +13,7 @@ from pydantic import ValidationError
 
 from voldetail.detail.record import Record
 from voldetail.errors import InputError
-from voldetail.image.examples import PREFIX
+from voldetail.records.examples import PREFIX
 from voldetail.records.reading import read_small_text
 from voldetail.records.refusal import dotted, printable, refusal, shown, worst
 from voldetail.setup.light import parse_light

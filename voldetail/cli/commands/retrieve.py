@@ -86,8 +86,8 @@ def retrieve(
         write_text(answers, json.dumps(record, indent=2) + "\n")
     if texture is not None:
         from voldetail.detail.texture_file import save_texture
-        from voldetail.image.examples import picture_path
         from voldetail.library import texture_of
+        from voldetail.records.examples import picture_path
 
         name = picture_path(photo)
         save_texture(texture, texture_of(found.answers[0], (asked.photo.shape[0], asked.photo.shape[1]), name.name))

@@ -37,7 +37,7 @@ def fit(
 ) -> None:
     """Analyse a photo: about seventy numbers that make the texture."""
     from voldetail.image import load_masked
-    from voldetail.image.examples import picture_path
+    from voldetail.records.examples import picture_path
     from voldetail.texture import analyse
 
     check_file(out)
