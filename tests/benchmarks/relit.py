@@ -46,8 +46,8 @@ class Yardstick:
         self.mask = mask
         self._references = {metric: reference(luminance, metric, mask) for metric in metrics}
         half = luminance.shape[1] // 2
-        one, other = np.ascontiguousarray(luminance[:, :half]), np.ascontiguousarray(luminance[:, -half:])
-        one_mask, other_mask = np.ascontiguousarray(mask[:, :half]), np.ascontiguousarray(mask[:, -half:])
+        one, other = (np.ascontiguousarray(luminance[:, part]) for part in (slice(None, half), slice(-half, None)))
+        one_mask, other_mask = (np.ascontiguousarray(mask[:, part]) for part in (slice(None, half), slice(-half, None)))
         self.halves = {metric: reference(one, metric, one_mask).distance(other, other_mask) for metric in metrics}
 
     def ratios(self, luminance: Picture) -> dict[str, float]:
@@ -78,7 +78,7 @@ def exposed(picture: Picture, like: Picture, mask: Mask, white: float) -> Pictur
     return np.asarray(np.minimum(picture * gain, white), dtype=np.float32)
 
 
-def look(surface: HeightField, lamp: Lamp, reflectance: Reflectance) -> Picture:
+def lit_picture(surface: HeightField, lamp: Lamp, reflectance: Reflectance) -> Picture:
     """Return the picture (H, W, 3) of a surface as it was last raised."""
     parts = components(surface, lamp, subsamples=SUBSAMPLES, shininess=(reflectance.shininess,))
     return parts.colour(reflectance)
