@@ -12,9 +12,14 @@ Ten seconds of searching from nothing, on scikit-image's gravel at 96 pixels.
 from voldetail.api import fit
 
 result = fit(
-    "skimage:gravel", light="70,50", zone=(160, 160, 192, 192), resolution=96, colour="none", seed=3,
+    "skimage:gravel",
+    light="70,50",
+    zone=(160, 160, 192, 192),
+    resolution=96,
+    colour="none",
+    seed=3,
     fit={"evaluations": 600, "library": "none"},
-)  # fmt: skip
+)
 print(f"M = {result.distance:.2f} after {result.evaluations} pictures; {result.status}")
 
 # %%
@@ -28,7 +33,10 @@ from voldetail.api import render
 from voldetail.image import resize, to_srgb
 
 sphere = render(result.detail, "sphere", light="160,35", size=(300, 300), background=1.0)
-photo, fitted = (resize(np.asarray(picture), (300, 300)) for picture in (result.target.pixels, result.coloured))
+photo, fitted = (
+    resize(np.asarray(picture), (300, 300))
+    for picture in (result.target.pixels, result.coloured)
+)
 
 plt.figure(figsize=(9, 3.2), layout="constrained")
 plt.imshow(to_srgb(np.hstack([photo, fitted, sphere])).clip(0, 1))

@@ -45,5 +45,7 @@ in_a_row(
 # %%
 # Halfway between the tissue and gravel.
 
-gravel = analyse(load_photo("skimage:gravel").pixels[:256, :256], name="gravel", directed=False)
+gravel = analyse(
+    load_photo("skimage:gravel").pixels[:256, :256], name="gravel", directed=False
+)
 in_a_row(*(picture(morph(texture, gravel, t), (256, 256)) for t in (0.25, 0.5, 0.75)))

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from importlib import import_module
+from typing import Any, get_type_hints
 
+from pydantic.fields import FieldInfo
 from typer.main import get_command
 
 from from_code.markdown import code, plain, table
+from from_code.records import allowed
+from voldetail.cli import commands
 from voldetail.cli.app import app
+from voldetail.cli.settings import _KEYS as KEYS
+from voldetail.cli.settings import field_of
 
 _TYPES = {"str": "TEXT", "int": "NUMBER", "float": "NUMBER", "Path": "FILE"}
 _OLDER_TYPES = {"text": "str", "integer": "int", "integer range": "int", "float range": "float", "path": "Path"}
@@ -30,6 +36,7 @@ def command_page(words: str) -> str:
     found: Any = get_command(app)
     for word in words.split():
         found = found.commands[word]
+    settings = _settings(words)
     given = [p for p in found.params if not getattr(p, "hidden", False)]
     arguments = [p for p in given if p.param_type_name == "argument"]
     options = [p for p in given if p.param_type_name == "option"]
@@ -40,7 +47,7 @@ def command_page(words: str) -> str:
     if arguments:
         pieces.append(table(["argument", "meaning"], [(code(_argument(p)), plain(p.help or "")) for p in arguments]))
     for panel in dict.fromkeys(_panel(p) for p in options):
-        rows = [(_names(p), _allowed(p), plain(p.help or "")) for p in options if _panel(p) == panel]
+        rows = [(_names(p), _allowed(p, settings.get(p.name)), plain(p.help or "")) for p in options if _panel(p) == panel]
         pieces.append(table([panel, "values", "meaning"], rows))
     return "\n".join(pieces)
 
@@ -71,10 +78,25 @@ def _value(option: Any) -> str:
     return str(option.metavar or _TYPES.get(_kind(option), _kind(option).upper()))
 
 
-def _allowed(option: Any) -> str:
-    """Return what an option takes: its value's name and bounds, and its default."""
+def _settings(words: str) -> dict[str, FieldInfo]:
+    """Return the record's fields that options of a command stand for as they are, by the names of its parameters."""
+    if not words:
+        return {}
+    module = import_module(".".join([commands.__name__, *words.split()]))
+    hints = get_type_hints(getattr(module, words.split()[-1]), include_extras=True)
+    keys = {name: KEYS.get(id(one)) for name, hint in hints.items() for one in getattr(hint, "__metadata__", ())}
+    return {name: field_of(found[0]) for name, found in keys.items() if found is not None and found[1] is None}
+
+
+def _allowed(option: Any, setting: FieldInfo | None) -> str:
+    """Return what an option takes: its value's name and bounds, and its default; of a setting, what its record says."""
     if option.is_flag:
         return ""
+    if setting is not None:
+        words = allowed(setting)
+        plainly = code(_value(option)) if words == "text" else plain(words)
+        has_one = not setting.is_required() and isinstance(setting.default, str | int | float)
+        return f"{plainly}, default {code(str(setting.default))}" if has_one else plainly
     words = code(_value(option)) + _bounds(option)
     if option.multiple:
         words += ", repeatable"

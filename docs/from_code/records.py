@@ -40,12 +40,13 @@ def record_page(path: str) -> str:
     """Return the fields of the record "voldetail.module.Name": name, what is allowed, default, sentence."""
     module, _, name = path.rpartition(".")
     record: type[BaseModel] = getattr(importlib.import_module(module), name)
-    rows = [(code(key), plain(_allowed(field)), _field_default(field), plain(field.description or ""))
+    rows = [(code(key), plain(allowed(field)), _field_default(field), plain(field.description or ""))
             for key, field in record.model_fields.items()]  # fmt: skip
     return table(["key", "allowed", "default", "meaning"], rows)
 
 
-def _allowed(field: FieldInfo) -> str:
+def allowed(field: FieldInfo) -> str:
+    """Return what a field takes, in the words in which it refuses other things."""
     return refusal._allowed(field)
 
 
