@@ -1,4 +1,4 @@
-"""Every block of the README is run, in order, in one folder."""
+"""Every block of README and of the pages in docs is run, in order: README's in one folder, each page's in a folder of its own."""
 
 from __future__ import annotations
 
@@ -12,15 +12,34 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", (ROOT / "README.md").read_text(encoding="utf-8"), re.M | re.S)
+GRAVEL = ROOT / "results" / "fits" / "gravel" / "detail.json"
+PROMISED = {
+    "fit": ("brick/report.html", "brick/sheet.png", "scene/detail.json", "lawn.png"),
+    "volume": ("tufts.png", "turf.png", "turf.vol", "on-turf.png"),
+    "bake": ("ring.ply",),
+    "render": ("cylinder.png", "plane.exr", "turn/sheet.png"),
+    "texture": ("wider.png", "ball.png", "softer.json", "morph/step_003.png"),
+    "tiles": ("heat.png", "tile.png", "even/detail.json"),
+    "retrieve": ("answers.png", "bricks.json", "bricks.png"),
+    "compare": ("flat.png",),
+    "show": (),
+    "python": ("cylinder.png",),
+}  # fmt: skip
+
+
+def blocks(path: Path) -> list[tuple[str, str]]:
+    """Language and text of the blocks of a page that are commands or programs."""
+    found = re.findall(r"^```(\w+)\n(.*?)^```$", path.read_text(encoding="utf-8"), re.M | re.S)
+    return [(language, text) for language, text in found if language in ("bash", "python")]
+
+
+PAGES = {path.stem: path for path in sorted((ROOT / "docs").rglob("*.md")) if blocks(path)}
 # The first two are the set-up of a fresh machine, which .ci/run runs as they stand.
-SETUP, REST = BLOCKS[:2], BLOCKS[2:]
+SETUP, REST = blocks(ROOT / "README.md")[:2], blocks(ROOT / "README.md")[2:]
 
 
-@pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the scenes, and a `voldetail` on the path that is the one under test."""
-    folder = tmp_path_factory.mktemp("readme")
+def folder_for_blocks(folder: Path) -> Path:
+    """Fill a folder with the scenes, and a `voldetail` on the path that is the one under test."""
     shutil.copytree(ROOT / "scenes", folder / "scenes")
     command = folder / "bin" / "voldetail"
     command.parent.mkdir()
@@ -29,9 +48,16 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def environment(place: Path) -> dict[str, str]:
-    paths = f"{place / 'bin'}{os.pathsep}{os.environ['PATH']}"
-    return os.environ | {"PATH": paths, "PYTHONPATH": str(ROOT)}
+def run(language: str, text: str, folder: Path) -> None:
+    program = ["bash", "-euc", text] if language == "bash" else [sys.executable, "-c", text]
+    paths = f"{folder / 'bin'}{os.pathsep}{os.environ['PATH']}"
+    environment = os.environ | {"PATH": paths, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(program, cwd=folder, env=environment, capture_output=True, text=True, timeout=400, check=False)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+
+
+def missing(folder: Path, promised: tuple[str, ...]) -> list[str]:
+    return [name for name in promised if not (folder / name).is_file() or (folder / name).stat().st_size == 0]
 
 
 def test_the_first_two_blocks_are_the_two_commands() -> None:
@@ -41,15 +67,25 @@ def test_the_first_two_blocks_are_the_two_commands() -> None:
     assert "pytest" in SETUP[1][1]
 
 
-@pytest.mark.parametrize("index", range(len(REST)), ids=[text.split("\n")[0][:40] for _, text in REST])
-def test_block_runs(index: int, place: Path) -> None:
-    language, text = REST[index]
-    program = ["bash", "-euc", text] if language == "bash" else [sys.executable, "-c", text]
-    done = subprocess.run(program, cwd=place, env=environment(place), capture_output=True, text=True, timeout=400, check=False)
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+def test_readme_runs(tmp_path: Path) -> None:
+    folder = folder_for_blocks(tmp_path)
+    for language, text in REST:
+        run(language, text, folder)
+    promised = ("gravel/report.html", "gravel/sheet.png", "sphere.png", "grass.json", "grass.png")
+    assert missing(folder, promised) == []
 
 
-def test_the_blocks_left_what_they_promise(place: Path) -> None:
-    for made in ("gravel/report.html", "gravel/sheet.png", "sphere.png", "grass.json", "grass.png", "cylinder.png", "plane.exr"):
-        assert (place / made).stat().st_size > 0, made
-    assert len(list((place / "turn").glob("*.png"))) >= 13
+def test_every_page_with_blocks_says_what_they_leave() -> None:
+    assert set(PROMISED) == set(PAGES)
+
+
+@pytest.mark.parametrize("page", sorted(PAGES))
+def test_page_runs(page: str, tmp_path: Path) -> None:
+    folder = folder_for_blocks(tmp_path)
+    (folder / "gravel").mkdir()
+    shutil.copy(GRAVEL, folder / "gravel" / "detail.json")  # in place of the quick start's, whose fit takes a minute
+    for language, text in blocks(PAGES[page]):
+        run(language, text, folder)
+    assert missing(folder, PROMISED[page]) == []
+    if page == "render":
+        assert len(list((folder / "turn").glob("*.png"))) == 12 + 1  # frames and their sheet

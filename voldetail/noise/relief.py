@@ -1,4 +1,4 @@
-"""The relief function R (GD10 eq. 3): octaves of cellular-Gabor noise through the curve H.
+"""The relief function R (GD10 eq. 3, which is eq. 1 with harmonic weights): octaves of cellular-Gabor noise through the curve H.
 
 Symbols
     R(x)    H(1/eta sum_i (q/m)^i N(m^i Q S x)), N one octave (noise.gabor, eq. 2)

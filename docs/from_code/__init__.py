@@ -1,0 +1,1 @@
+"""Pages that are written from the code: commands, parameters, records, rooms, equations. Each part returns Markdown."""
