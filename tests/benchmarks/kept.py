@@ -13,7 +13,7 @@ from voldetail.image import to_srgb
 WIDEST = 1000
 """Pixels across, beyond which a sheet is made smaller."""
 
-QUALITY = 75
+QUALITY = 72
 """Of JPEG: a third of a PNG's bytes, and no block seen in stones or grass at twice the size."""
 
 
