@@ -6,7 +6,6 @@ import os
 import re
 import subprocess
 import sys
-from contextlib import suppress
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -17,6 +16,12 @@ from voldetail.errors import VoldetailError
 MINIMUM_LLVM = 19
 """LLVM 15 and 16 abort the whole process at the first render ("Cannot select ... fminimum"); 19 and 23 work; 17 and 18
 are not known, so they are not used."""
+
+IMPLAUSIBLE_LLVM = 1000
+"""A number in a library's name from which it is no version: a date, or a hash."""
+
+CHOSEN: list[str] = []
+"""The library that `prepare` chose by its name, so that it is not taken for the user's own choice."""
 
 VARIANTS = ("llvm_ad_rgb", "cuda_ad_rgb")
 
@@ -35,7 +40,7 @@ def mitsuba() -> ModuleType:
     if variant not in VARIANTS:
         raise BackendError(f"VOLDETAIL_VARIANT={variant} is not one of {', '.join(VARIANTS)}: unset it or choose one")
     if variant.startswith("llvm"):
-        find_llvm()
+        os.environ["DRJIT_LIBLLVM_PATH"] = str(find_llvm())
     mi = import_module("mitsuba")
     if mi.variant() != variant:
         mi.set_variant(variant)
@@ -60,9 +65,13 @@ def prepare() -> None:
 
     Where none is usable nothing happens yet: `mitsuba` says so when it is needed.
     """
-    if "DRJIT_LIBLLVM_PATH" not in os.environ:
-        with suppress(BackendError):
-            os.environ["DRJIT_LIBLLVM_PATH"] = str(find_llvm())
+    if "DRJIT_LIBLLVM_PATH" in os.environ:
+        return
+    # By file names alone: an import starts no child process. `mitsuba` looks into the library before it is used.
+    named = [path for path in candidates() if MINIMUM_LLVM <= _named_version(path) < IMPLAUSIBLE_LLVM]
+    if named:
+        CHOSEN[:] = [str(max(named, key=_named_version))]
+        os.environ["DRJIT_LIBLLVM_PATH"] = CHOSEN[0]
 
 
 def set_threads(count: int) -> None:
@@ -78,6 +87,8 @@ def find_llvm() -> Path:
     Raises BackendError with what to install; an LLVM that would abort the process is never returned.
     """
     own = os.environ.get("DRJIT_LIBLLVM_PATH")
+    if own in CHOSEN:
+        own = None  # not the user's
     if own:
         version = llvm_version(Path(own))
         if version is None:

@@ -16,16 +16,17 @@ from typing import Any
 import numpy as np
 
 from tests.benchmarks.photographs import PHOTOGRAPHS, Photograph, is_there, setup_of
-from tests.benchmarks.relit import Picture, look, markdown, save_sheet
+from tests.benchmarks.relit import Picture, lit_picture, markdown, save_sheet
+from tests.benchmarks.yardsticks import reference
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail, load_detail, save_detail
 from voldetail.files import write_text
 from voldetail.fit import fit
-from voldetail.fit.target import Target, make_target
+from voldetail.fit.target import make_target
 from voldetail.image import luminance
-from voldetail.metric import describe, distance
 from voldetail.render.build import build
 from voldetail.render.heightfield import HeightField
+from voldetail.results import Target
 from voldetail.setup.setup import Setup
 
 METRICS = ("published", "combined", "patches")
@@ -36,7 +37,7 @@ def picture_of(detail: Detail, setup: Setup, target: Target) -> Picture:
     surface = build(setup, target.shape, target.zone)
     assert isinstance(surface, HeightField)
     surface.update(detail)
-    return np.minimum(look(surface, target.lamp, detail.reflectance), target.white).astype(np.float32)
+    return np.minimum(lit_picture(surface, target.lamp, detail.reflectance), target.white).astype(np.float32)
 
 
 def distances(picture: Picture, target: Target) -> dict[str, float]:
@@ -44,8 +45,7 @@ def distances(picture: Picture, target: Target) -> dict[str, float]:
     mask = None if target.mask.all() else target.mask
     found = {}
     for metric in METRICS:
-        reference = describe(target.luminance, mask, metric=metric)
-        found[metric] = round(distance(reference, describe(luminance(picture), mask, like=reference)), 4)
+        found[metric] = round(reference(target.luminance, metric, mask).distance(luminance(picture), mask), 4)
     return found
 
 

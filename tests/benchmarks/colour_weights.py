@@ -32,7 +32,7 @@ from voldetail.noise.wavelet import wavelet_noise
 from voldetail.noise.wavelet_spectrum import variance
 from voldetail.texture import analyse, colour_at, picture
 from voldetail.texture.curve import curve_at
-from voldetail.texture.power import band_powers, direct_weights, weights_of
+from voldetail.texture.power import band_powers, weights_of
 
 Floats = NDArray[np.float64]
 
@@ -74,7 +74,7 @@ def weight_recovery() -> dict[str, Any]:
             powers = band_powers(shown - shown.mean())
             found = weights_of(powers, shown.shape)
             errors["recovered"].append(found - weights)
-            errors["eq. 12 alone"].append(direct_weights(powers) - weights)
+            errors["eq. 12 alone"].append(np.sqrt(powers / variance(2)) - weights)
             realised = np.sqrt(bands[:, channel].var(axis=(1, 2)) / variance(2))
             errors["finite sample"].append(weights * (realised - 1.0))
             example = example or {"true": np.round(weights, 4).tolist(), "recovered": np.round(found, 4).tolist()}

@@ -32,7 +32,7 @@ from tests.benchmarks.relit import (
     Yardstick,
     exposed,
     heights_of,
-    look,
+    lit_picture,
     markdown,
     raise_by_brightness,
     reflectance_under,
@@ -43,19 +43,20 @@ from tests.benchmarks.relit import (
 from voldetail.errors import InputError
 from voldetail.files import write_text
 from voldetail.fit import fit
-from voldetail.fit.target import Target, make_target
+from voldetail.fit.target import make_target
 from voldetail.image import Photo, load_photo, luminance
 from voldetail.render.build import build
 from voldetail.render.heightfield import HeightField
+from voldetail.results import Target
 from voldetail.setup.file import setup_from
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.light import Light, parse_light
 from voldetail.setup.setup import Setup
 from voldetail.setup.view import Zone, view_of
 
-METRICS = ("combined", "patches", "jets", "lean", "published")
-"""The first is what was minimised; patches, jets and lean take no part in it, and lean alone sees the lit side; the last is
-GD10's own."""
+METRICS = ("combined", "patches", "jets", "gradient-skew", "published")
+"""The first is what was minimised; patches, jets and gradient-skew take no part in it, and gradient-skew alone sees the lit
+side; the last is GD10's own."""
 
 COLUMNS = (*METRICS, "side")
 """`side` is no distance between textures: how far apart they look lit from, the length of a difference of vectors."""
@@ -179,7 +180,7 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
         return setup_from(
             {
                 "photo": {"path": f"{capture.name}.png", "zone": zone}, "light": light,
-                "mask": mask_of(capture.name), "fit": {"evaluations": evaluations},
+                "mask": mask_of(capture.name), "fit": {"evaluations": evaluations, "library": "none"},
             },
             capture.name,
         )
@@ -207,9 +208,9 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
         seen = make_target(setup_of(shot.light, target.zone), shot.load())
         lamp = Lamp(seen.lamp.direction, seen.lamp.position, seen.lamp.strength, shot.at_camera)
         pictures = {
-            "fit": look(surface, lamp, detail.reflectance),
+            "fit": lit_picture(surface, lamp, detail.reflectance),
             "flat": target.pixels * (on_plane(lamp) / shading)[..., None],
-            "brightness": look(bumps, lamp, bumps_reflectance),
+            "brightness": lit_picture(bumps, lamp, bumps_reflectance),
         }
         yardstick = Yardstick(seen.luminance, seen.mask, METRICS)
         own_side, ratios = side(seen.luminance, seen.mask), {}

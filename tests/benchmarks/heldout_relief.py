@@ -29,7 +29,7 @@ from tests.benchmarks.relit import (
     Yardstick,
     height_record,
     heights_of,
-    look,
+    lit_picture,
     markdown,
     raise_by_brightness,
     raise_to,
@@ -138,7 +138,7 @@ def run(scan: Scan, evaluations: int | None, sheets: Path | None) -> dict[str, A
     setup = setup_from(
         {
             "photo": {"path": "rendered.png", "resolution": SIDE, "zone": [0, 0, SIDE, SIDE]}, "light": LIGHT,
-            "fit": {"evaluations": evaluations},
+            "fit": {"evaluations": evaluations, "library": "none"},
         },
         scan.name,
     )
@@ -152,7 +152,7 @@ def run(scan: Scan, evaluations: int | None, sheets: Path | None) -> dict[str, A
     raise_to(truth, cut(scan, truth))
     raise_to(other, cut(scan, other, other=True))
     assert setup.light.direction is not None
-    encoded = np.round(to_srgb(np.clip(look(truth, Lamp(setup.light.direction), TRUE_REFLECTANCE), 0, 1)) * 255) / 255
+    encoded = np.round(to_srgb(np.clip(lit_picture(truth, Lamp(setup.light.direction), TRUE_REFLECTANCE), 0, 1)) * 255) / 255
     photo = np.asarray(to_linear(encoded), dtype=np.float32)
     result = fit(setup, photo=Photo(photo, "0" * 64, ()))
     fitted.update(result.detail)
@@ -165,12 +165,12 @@ def run(scan: Scan, evaluations: int | None, sheets: Path | None) -> dict[str, A
         "other_cut": (other, TRUE_REFLECTANCE),
     }
     lights: list[dict[str, Any]] = []
-    rows: list[list[Picture]] = [[photo, look(fitted, result.target.lamp, result.detail.reflectance)]]
+    rows: list[list[Picture]] = [[photo, lit_picture(fitted, result.target.lamp, result.detail.reflectance)]]
     for azimuth, elevation in (*OTHER_LIGHTS, GRAZING):
         lamp = Lamp(direction_of(azimuth, elevation))
-        true = look(truth, lamp, TRUE_REFLECTANCE)
+        true = lit_picture(truth, lamp, TRUE_REFLECTANCE)
         yardstick = Yardstick(luminance(true), result.target.mask, ("combined",))
-        pictures = {name: look(seen, lamp, reflectance) for name, (seen, reflectance) in candidates.items()}
+        pictures = {name: lit_picture(seen, lamp, reflectance) for name, (seen, reflectance) in candidates.items()}
         ratios = {name: yardstick.ratios(luminance(picture))["combined"] for name, picture in pictures.items()}
         lights.append({"light": f"{azimuth:g},{elevation:g}", "halves": round(yardstick.halves["combined"], 4), "ratios": ratios})
         # Opposite the photo's light, and the lowest.

@@ -18,17 +18,20 @@ from scipy.special import expit, logsumexp
 
 from tests.benchmarks import texture_pictures as pictures
 from tests.benchmarks.metric_table import RESULTS, retrieval
-from tests.benchmarks.rivals import contours
+from tests.benchmarks.rivals import RIVALS, Rival
 from tests.benchmarks.searched_decoys import searched
 from voldetail.files import write_text
 from voldetail.metric.floors import noise_floors
-from voldetail.metric.ingredients import COMBINED, INGREDIENTS
+from voldetail.metric.ingredients import COMBINED, INGREDIENTS, Ingredient
 from voldetail.metric.layers import Layers, layers
 
 Array = NDArray[np.float64]
 Part = tuple[str, str]
 
-MEASURED = {n: m for n, m in INGREDIENTS.items() if n not in ("published", "gabor", "tone")} | {"contours": contours}
+MEASURED: dict[str, Ingredient | Rival] = {
+    **{n: m for n, m in INGREDIENTS.items() if n not in ("published", "gabor")},
+    **{n: RIVALS[n] for n in ("patches", "jets", "contours")},
+}
 """What may be weighed: all but the published metric, which has to stay apart, and what sees hardly more than tone."""
 
 FOLDS = 6
@@ -38,7 +41,7 @@ SEEDS = (0, 1)
 HOLD = 3.0
 """How strongly learned weights are held to the default's; between 0.3 and 10 scores hardly change."""
 
-SHARES = {"granulometry": 1 / 6, "swells": 0.04}
+SHARES = {"granulometry": 1 / 6, "low-pass": 0.04}
 """Shares of the weight that fits need, whatever photographs say."""
 
 POWERS = (0.5, 1.5, 2.0, 3.0, 4.0)
@@ -54,6 +57,10 @@ SHAPES: dict[str, Callable[[Array], Array]] = {
     "plain": lambda v: v,
     "soft floor": lambda v: np.sqrt(1 + v * v) - 1,  # quadratic within the noise floor, straight beyond
 }
+
+
+def _apart(way: Ingredient | Rival, a: Any, b: Any, basis: Any) -> float:
+    return way.compare(a, b, basis) if hasattr(way, "compare") else float(way.apart(a, b, basis))
 
 
 @dataclass(frozen=True)
@@ -78,7 +85,7 @@ def collect(photos: dict[str, pictures.Picture]) -> tuple[list[Part], list[str],
 
         def apart(a: Any, b: Any, basis: Any = basis) -> dict[Part, float]:
             return {
-                (n, part): MEASURED[n].compare(value, b[n][part], basis[n].get(part))
+                (n, part): _apart(MEASURED[n], value, b[n][part], basis[n].get(part))
                 for n, found in a.items() for part, value in found.items()
             }  # fmt: skip
 

@@ -69,10 +69,11 @@ OVERVIEW = ("gravel", "rock_plants", "stone_slab", "pebble_wall", "rock_weathere
 
 
 def setup_of(photograph: Photograph, **fit_settings: Any) -> Setup:
-    """Return the Setup of one photograph, with settings of the fit that are not the default's."""
+    """Return the Setup of one photograph, with settings of the fit that are not the default's; without a library."""
     path = photograph.path if photograph.path.startswith("skimage:") else str(SHARED / photograph.path)
     return setup_from(
-        {"photo": {"path": path, "zone": photograph.zone}, "light": photograph.light, "fit": fit_settings}, photograph.name
+        {"photo": {"path": path, "zone": photograph.zone}, "light": photograph.light,
+         "fit": {"library": "none"} | fit_settings}, photograph.name
     )
 
 

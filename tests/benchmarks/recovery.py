@@ -28,7 +28,7 @@ from voldetail.render.build import build
 from voldetail.render.heightfield import HeightField
 from voldetail.render.unit_components import components
 from voldetail.setup.file import setup_from
-from voldetail.setup.lamp import lamp_of
+from voldetail.setup.light import lamp_of
 
 NAMES = ("ash", "beech", "cedar", "elm", "fir", "hazel", "larch", "maple", "oak", "pine", "rowan", "willow")
 SIDE = 192
@@ -66,7 +66,7 @@ def _setup(light: str, solver: str, metric: str, evaluations: int | None) -> Any
     return setup_from(
         {
             "photo": {"path": "rendered.png", "resolution": SIDE, "zone": [0, 0, SIDE, SIDE]}, "light": light,
-            "fit": {"solver": solver, "metric": metric, "evaluations": evaluations},
+            "fit": {"solver": solver, "metric": metric, "evaluations": evaluations, "library": "none"},
         },
         "recovery",
     )

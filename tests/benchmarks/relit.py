@@ -11,15 +11,14 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.ndimage import binary_erosion, gaussian_filter, map_coordinates
 
+from tests.benchmarks.yardsticks import reference
 from voldetail.backend import mitsuba
 from voldetail.detail import Reflectance
-from voldetail.fit.interval import AmplitudeInterval
 from voldetail.fit.reflectance import solve
-from voldetail.fit.target import Target, halves_apart
 from voldetail.image import to_srgb
-from voldetail.metric import describe, distance
 from voldetail.render.heightfield import MARGIN, HeightField
 from voldetail.render.unit_components import Components, components
+from voldetail.results import AmplitudeInterval, Target
 from voldetail.setup.lamp import Lamp
 
 Picture = NDArray[np.float32]
@@ -45,20 +44,18 @@ class Yardstick:
 
     def __init__(self, luminance: Picture, mask: Mask, metrics: Sequence[str]) -> None:
         self.mask = mask
-        self._references = {metric: describe(luminance, mask, metric=metric) for metric in metrics}
-        self.halves: dict[str, float] = {}
-        for metric in metrics:
-            halves = halves_apart(luminance, mask, metric)
-            assert halves is not None, "the zone is too small to be cut in halves"
-            self.halves[metric] = halves
+        self._references = {metric: reference(luminance, metric, mask) for metric in metrics}
+        half = luminance.shape[1] // 2
+        one, other = (np.ascontiguousarray(luminance[:, part]) for part in (slice(None, half), slice(-half, None)))
+        one_mask, other_mask = (np.ascontiguousarray(mask[:, part]) for part in (slice(None, half), slice(-half, None)))
+        self.halves = {metric: reference(one, metric, one_mask).distance(other, other_mask) for metric in metrics}
 
     def ratios(self, luminance: Picture) -> dict[str, float]:
         """Return the distance of another picture by each metric, in units of the halves' own."""
-        found = {}
-        for metric, reference in self._references.items():
-            other = describe(luminance, self.mask, like=reference)
-            found[metric] = round(distance(reference, other) / self.halves[metric], 3)
-        return found
+        return {
+            metric: round(one.distance(luminance, self.mask) / self.halves[metric], 3)
+            for metric, one in self._references.items()
+        }
 
 
 def side(luminance: Picture, mask: Mask) -> NDArray[np.float64]:
@@ -81,7 +78,7 @@ def exposed(picture: Picture, like: Picture, mask: Mask, white: float) -> Pictur
     return np.asarray(np.minimum(picture * gain, white), dtype=np.float32)
 
 
-def look(surface: HeightField, lamp: Lamp, reflectance: Reflectance) -> Picture:
+def lit_picture(surface: HeightField, lamp: Lamp, reflectance: Reflectance) -> Picture:
     """Return the picture (H, W, 3) of a surface as it was last raised."""
     parts = components(surface, lamp, subsamples=SUBSAMPLES, shininess=(reflectance.shininess,))
     return parts.colour(reflectance)

@@ -26,10 +26,11 @@ from voldetail.fit.colour import ColourDistance, choose_colour
 from voldetail.fit.fitter import COLOUR_SEEDS
 from voldetail.fit.objective import Objective
 from voldetail.fit.session import derived_seed
-from voldetail.fit.target import Target, make_target
+from voldetail.fit.target import make_target
 from voldetail.image import luminance
 from voldetail.render.build import build
 from voldetail.render.unit_components import components
+from voldetail.results import Target
 from voldetail.setup.file import setup_from
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.setup import Light, Setup
@@ -68,7 +69,7 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
         return setup_from(
             {
                 "photo": {"path": f"{capture.name}.png", "zone": zone}, "light": light, "colour": "none",
-                "mask": mask_of(capture.name), "fit": {"evaluations": evaluations},
+                "mask": mask_of(capture.name), "fit": {"evaluations": evaluations, "library": "none"},
             },
             capture.name,
         )

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from tests.benchmarks.retrieval_models import ENTRIES, RESULTS, library
 from tests.benchmarks.retrieval_photos import Sought, ready, there
 from voldetail.image import luminance, to_srgb
-from voldetail.library import Answer, Familiarity, Query, familiarity, picture, rank
+from voldetail.library import Answer, Novelty, Query, novelty_of, picture, rank
 from voldetail.library.groups import Groups
 from voldetail.metric import describe, distance
 
@@ -80,12 +80,12 @@ def main() -> None:
         asked = ready(sought)
         found = answers(groups, asked)
         looks = judged(asked, found[:SHOWN])
-        familiar = familiarity(groups[found[0].model], found[0])
-        assert familiar is not None
-        report[sought.name] = record(sought, asked, found, looks, familiar)
-        rows.append((sought, asked, found[:SHOWN], familiar.known))
+        novelty = novelty_of(groups[found[0].model], found[0])
+        assert novelty is not None
+        report[sought.name] = record(sought, asked, found, looks, novelty)
+        rows.append((sought, asked, found[:SHOWN], not novelty.novel))
         words = [f"{a.model} {a.distance:.2f} M {m:.1f}" for a, m in zip(found, looks, strict=False)]
-        print(sought.name, familiar.known, round(familiar.farthest, 3), words, flush=True)
+        print(sought.name, not novelty.novel, round(novelty.farthest, 3), words, flush=True)
     for name, place, chosen in (
         ("sheet", RESULTS, [row for row in rows if row[0].credit]), ("other", folder, [row for row in rows if not row[0].credit])
     ):  # fmt: skip
@@ -94,11 +94,11 @@ def main() -> None:
     (RESULTS / "photographs.json").write_text(json.dumps(report, indent=1) + "\n")
 
 
-def record(sought: Sought, asked: Query, found: list[Answer], looks: list[float], familiar: Familiarity) -> dict[str, Any]:
+def record(sought: Sought, asked: Query, found: list[Answer], looks: list[float], novelty: Novelty) -> dict[str, Any]:
     """What the JSON file says of a photograph."""
     return {
         "about": sought.about, "outside": sought.outside, "explained": round(asked.tones.explained, 3),
-        "known": familiar.known, "farthest_of_its_model": round(familiar.farthest, 3),
+        "known": not novelty.novel, "farthest_of_its_model": round(novelty.farthest, 3),
         "answers": [
             {
                 "model": a.model, "distance": round(a.distance, 3), "M": round(m, 2), "degrees": round(degrees(a.rotation), 2),

@@ -13,6 +13,7 @@ import time
 from pathlib import Path
 from statistics import median
 from typing import Any
+from unittest.mock import patch
 
 from PIL import Image
 
@@ -36,18 +37,19 @@ def run(photograph: Photograph, library: str) -> tuple[dict[str, Any], FitResult
     curve: Curve = []
     asked: list[float] = []
 
-    def starts_for(*given: Any) -> Any:
+    def timed(*given: Any, **more: Any) -> Any:
         begun = time.perf_counter()
-        found = starts_from(*given)
+        starts = starts_from(*given, **more)
         asked.append(time.perf_counter() - begun)
-        return found
+        return starts
 
     def on_progress(progress: Progress) -> None:
         if progress.best < (curve[-1][1] if curve else float("inf")):
             curve.append((round(progress.seconds, 2), progress.best))
 
     begun = time.perf_counter()
-    result = fit(setup, starts_for=starts_for, on_progress=on_progress)
+    with patch("voldetail.fit.fitter.starts_from", timed):
+        result = fit(setup, on_progress=on_progress)
     record = {
         "M": round(result.distance, 3), "seconds": round(time.perf_counter() - begun, 1), "evaluations": result.evaluations,
         "library": round(sum(asked), 2), "curve": [[at, round(best, 3)] for at, best in curve],

@@ -59,7 +59,8 @@ def run(name: str, light: str, evaluations: int | None) -> tuple[dict[str, Any],
 
     def setup_of(even: bool) -> Setup:
         source = {"path": str(path), "zone": zone, "resolution": RESOLUTION, "stationarize": even}
-        return setup_from({"photo": source, "light": light, "colour": "none", "fit": {"evaluations": evaluations}}, name)
+        settings = {"evaluations": evaluations, "library": "none"}
+        return setup_from({"photo": source, "light": light, "colour": "none", "fit": settings}, name)
 
     plain = make_target(setup_of(False), photo)
     half = RESOLUTION // 2

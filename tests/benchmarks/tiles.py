@@ -22,7 +22,8 @@ from voldetail.backend import mitsuba
 from voldetail.detail import Detail
 from voldetail.field.hypertexture import Hypertexture
 from voldetail.field.shell import make_shell
-from voldetail.field.shell_blocks import block_counts, near_blocks
+from voldetail.field.shell_blocks import near_blocks
+from voldetail.field.shell_grid import block_counts
 from voldetail.field.shell_plan import plan_shell
 from voldetail.field.tiled_surface import tiled_isosurface
 from voldetail.files import write_text

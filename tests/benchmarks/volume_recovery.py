@@ -32,7 +32,7 @@ from voldetail.metric import describe, distance
 from voldetail.render.build import build
 from voldetail.render.unit_components import components
 from voldetail.setup.file import setup_from
-from voldetail.setup.lamp import lamp_of
+from voldetail.setup.light import lamp_of
 from voldetail.setup.setup import Setup
 
 Look = Literal["surface", "medium"]

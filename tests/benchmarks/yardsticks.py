@@ -4,6 +4,9 @@ import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tests.benchmarks.rivals import RIVALS
 from tests.benchmarks.texture_pictures import Picture
 from voldetail.metric import METRICS, Descriptor, describe, distance
@@ -39,15 +42,15 @@ class Reference:
         rival = RIVALS[self.metric]
         return sum(rival.compare(a, measured[name], self.basis.get(name)) for name, a in self.features.items())
 
-    def distance(self, picture: Picture) -> float:
-        return self.apart(self.measure(layers(picture)))
+    def distance(self, picture: Picture, mask: NDArray[np.bool_] | None = None) -> float:
+        return self.apart(self.measure(layers(picture, mask)))
 
 
-def reference(picture: Picture, metric: str) -> Reference:
-    """Describe a picture that others are compared with."""
+def reference(picture: Picture, metric: str, mask: NDArray[np.bool_] | None = None) -> Reference:
+    """Describe a picture that others are compared with, inside ``mask``."""
     if metric in METRICS:
-        return Reference(metric, describe(picture, metric=metric), {}, {})
-    seen, rival = layers(picture), RIVALS[metric]
+        return Reference(metric, describe(picture, mask, metric=metric), {}, {})
+    seen, rival = layers(picture, mask), RIVALS[metric]
     basis = rival.basis(seen)
     return Reference(metric, None, basis, rival.measure(seen, basis))
 

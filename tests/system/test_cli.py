@@ -18,12 +18,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from voldetail.apply.gallery import Gallery
 from voldetail.cli import main
 from voldetail.detail import load_detail
 from voldetail.fit.state_file import load_state
 from voldetail.fit.target import load_photo_of
 from voldetail.image import load_photo
+from voldetail.results import Gallery
 from voldetail.setup.file import load_setup
 
 RESULTS = ["detail.json", "fit.png", "report.html", "setup.toml", "sheet.png", "state.json"]

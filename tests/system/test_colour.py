@@ -23,12 +23,13 @@ from voldetail.detail import (
 )
 from voldetail.errors import InputError
 from voldetail.fit import FitResult, fit
-from voldetail.fit.colour import HANDICAPS
+from voldetail.fit.colour import PENALTIES
 from voldetail.image import Photo, luminance, save_image
 from voldetail.render.build import build
 from voldetail.render.plugins.colour import colour_dict
 from voldetail.render.unit_components import components
-from voldetail.setup.lamp import Lamp, lamp_of
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import lamp_of
 from voldetail.setup.setup import FitSettings, Light, PhotoSetup, Setup
 from voldetail.texture import analyse, colour_at, picture
 
@@ -191,7 +192,7 @@ def test_auto_says_what_it_tried() -> None:
     told: Any = result.detail.provenance.settings["colour"]
     assert set(told["distances"]) == {"none", "noise", "height", "hollow", "cell"}
     assert told["chosen"] != "none"
-    best = min(told["distances"], key=lambda driver: told["distances"][driver] * HANDICAPS.get(driver, 1.0))
+    best = min(told["distances"], key=lambda driver: told["distances"][driver] * PENALTIES.get(driver, 1.0))
     assert told["chosen"] == {"noise": "by-example", "hollow": "height"}.get(best, best)
 
 

@@ -10,11 +10,11 @@ from scipy.ndimage import gaussian_filter
 from voldetail.cli import main
 from voldetail.detail import load_detail
 from voldetail.errors import InputError
-from voldetail.fit.evenness import UNEVEN, evened, unevenness, warning
+from voldetail.fit.evenness import evened, unevenness, warning
 from voldetail.fit.target import make_target
 from voldetail.fit.zone import around
 from voldetail.image import Photo, luminance, save_image
-from voldetail.report.facts import EVEN_ENOUGH
+from voldetail.results import EVEN_ENOUGH
 from voldetail.setup.file import setup_from
 from voldetail.setup.setup import Light, PhotoSetup, Setup
 
@@ -42,7 +42,7 @@ def value(pixels: NDArray[np.float32], mask: NDArray[np.bool_] = ALL) -> float:
 
 def test_even_and_uneven() -> None:
     assert value(grain()) < 0.2
-    assert value(shaded()) > UNEVEN
+    assert value(shaded()) > EVEN_ENOUGH
     # Brightness and contrast of the photo as a whole do not matter much, nor does which way it darkens.
     assert value(shaded()[:, ::-1]) == pytest.approx(value(shaded()), rel=0.02)
     assert value(shaded() * 0.5) == pytest.approx(value(shaded()), rel=0.15)
@@ -53,10 +53,6 @@ def test_what_is_masked_does_not_count() -> None:
     pixels[:40, :40] = 0.9
     mask[:40, :40] = False
     assert value(pixels, mask) < 0.2 < value(pixels)
-
-
-def test_the_report_names_the_same_limit() -> None:
-    assert EVEN_ENOUGH == UNEVEN
 
 
 def test_one_colour_has_no_evenness() -> None:
@@ -70,7 +66,7 @@ def test_the_warning_is_one_sentence_that_says_what_to_do() -> None:
     assert "--zone" in said
     assert "--stationarize" in said
     assert said.count(". ") == 0
-    assert warning(UNEVEN) == ""
+    assert warning(EVEN_ENOUGH) == ""
 
 
 def test_evened_is_even_and_made_of_the_photo() -> None:
@@ -130,4 +126,4 @@ def test_the_command_warns_and_evens(tmp_path: Any, capsys: Any) -> None:
     made = load_detail(tmp_path / "b" / "detail.json").provenance
     assert made is not None
     assert made.settings["stationarized"] is True
-    assert float(made.settings["unevenness"]) > UNEVEN  # type: ignore[arg-type]
+    assert float(made.settings["unevenness"]) > EVEN_ENOUGH  # type: ignore[arg-type]

@@ -24,7 +24,7 @@ from voldetail.fit.target import make_target
 from voldetail.image import Photo, save_image
 from voldetail.render.build import build
 from voldetail.render.unit_components import components
-from voldetail.setup.lamp import lamp_of
+from voldetail.setup.light import lamp_of
 from voldetail.setup.setup import CameraSetup, FitSettings, Light, PhotoSetup, ProxySetup, Setup
 
 LIGHT = Light(direction=(0.5, 0.3, 0.7))

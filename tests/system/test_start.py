@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,29 +15,30 @@ from voldetail.fit import fit
 from voldetail.fit.fitter import takes_starts
 from voldetail.fit.session import State
 from voldetail.fit.state_file import load_state
-from voldetail.fit.target import Target, load_photo_of, make_target
+from voldetail.fit.target import load_photo_of, make_target
 from voldetail.fit.warmstart import ReliefSource, starts_from
 from voldetail.fit.warmstart.light import direction_at_zone
 from voldetail.fit.warmstart.nearest import nearest_reliefs
-from voldetail.fit.warmstart.reliefs import FINE, SPACE, look
+from voldetail.fit.warmstart.reliefs import FINE, SPACE, library_relief
 from voldetail.fit.warmstart.start import Start
 from voldetail.image import Photo, save_png
 from voldetail.library.building.build import build as build_library
 from voldetail.library.store import Library, open_library
 from voldetail.render.build import build
 from voldetail.render.unit_components import components
+from voldetail.results import Target
 from voldetail.setup.file import setup_from
-from voldetail.setup.lamp import lamp_of
+from voldetail.setup.light import lamp_of
 from voldetail.setup.setup import Setup
 from voldetail.setup.view import view_of
 
-LOOKS = 48
+RELIEFS = 48
 
 
 @pytest.fixture(scope="module")
 def reliefs(tmp_path_factory: pytest.TempPathFactory) -> Library:
     folder = tmp_path_factory.mktemp("reliefs") / "lib"
-    return open_library(build_library([ReliefSource(50), ReliefSource(20)], [LOOKS, 8], folder, workers=1))
+    return open_library(build_library([ReliefSource(50), ReliefSource(20)], [RELIEFS, 8], folder, workers=1))
 
 
 def wanted(light: str, library: str = "none", **settings: object) -> Setup:
@@ -57,18 +59,18 @@ def photo_of(detail: Detail, light: str) -> Photo:
 
 
 def turned(k: int, radians: float, mirrored: bool) -> Detail:
-    """Look k as it is under a light that comes from ``radians``."""
-    detail = look(k).detail()
+    """Relief k as it is under a light that comes from ``radians``."""
+    detail = library_relief(k).detail()
     angle = -detail.noise.angle if mirrored else detail.noise.angle
     noise = detail.noise.model_copy(update={"angle": (radians + angle) % math.pi})
     return detail.model_copy(update={"noise": noise, "seed": 77})
 
 
 def stretched() -> list[int]:
-    """Looks whose direction can be seen."""
+    """Reliefs whose direction can be seen."""
     found = []
-    for k in range(LOOKS):
-        noise = look(k).detail().noise
+    for k in range(RELIEFS):
+        noise = library_relief(k).detail().noise
         if max(noise.anisotropy, 1 / noise.anisotropy) > 1.6 and 0.4 < noise.angle < 1.2 and noise.scale > 4:
             found.append(k)
     return found
@@ -86,8 +88,9 @@ def test_the_relief_in_a_photo_is_found_under_light_from_any_side(reliefs: Libra
             angles.append(found[0].mirrored == mirrored)
             detail = SPACE.decode(starts[0].kind, starts[0].candidate(SPACE).vector)
             sign = -1 if found[0].mirrored else 1
-            assert detail.noise.angle == pytest.approx((math.radians(azimuth) + sign * look(k).detail().noise.angle) % math.pi)
-            assert detail.noise.scale == pytest.approx(look(k).detail().noise.scale, rel=1e-6)
+            noise = library_relief(k).detail().noise
+            assert detail.noise.angle == pytest.approx((math.radians(azimuth) + sign * noise.angle) % math.pi)
+            assert detail.noise.scale == pytest.approx(noise.scale, rel=1e-6)
     assert len(firsts) >= 4
     assert sum(firsts) >= len(firsts) - 1
     assert len(angles) >= 3
@@ -95,7 +98,7 @@ def test_the_relief_in_a_photo_is_found_under_light_from_any_side(reliefs: Libra
 
 
 def test_reliefs_are_the_same_bytes_in_whatever_chunks(reliefs: Library, tmp_path: Path) -> None:
-    again = open_library(build_library([ReliefSource(50), ReliefSource(20)], [LOOKS, 8], tmp_path / "lib", chunk=7))
+    again = open_library(build_library([ReliefSource(50), ReliefSource(20)], [RELIEFS, 8], tmp_path / "lib", chunk=7))
     assert again.header.sha256 == reliefs.header.sha256
 
 
@@ -174,28 +177,35 @@ def test_which_fits_are_told_where_to_start() -> None:
     assert not takes_starts(wanted("0,50", "auto", solver="paper"))
 
 
-def test_a_fit_that_is_told_where_to_start_begins_there_and_goes_on_with_its_plan(reliefs: Library) -> None:
-    fine = next(k for k in range(LOOKS) if look(k).detail().noise.scale > 8)
+def test_a_fit_that_is_told_where_to_start_begins_there_and_goes_on_with_its_plan(
+    reliefs: Library, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fine = next(k for k in range(RELIEFS) if library_relief(k).detail().noise.scale > 8)
     photo, light = photo_of(turned(fine, 0.6, False), f"{math.degrees(0.6)},50"), f"{math.degrees(0.6)},50"
     setup = wanted(light, str(reliefs.header.path), evaluations=30, specular=False).model_copy(update={"colour": "none"})
-    told: list[State] = []
+    started: list[State] = []
     alone: list[State] = []
 
-    def starts_for(setup: Setup, target: Target) -> tuple[Start, ...]:
-        return starts_from(setup, target)[:8]
+    asked: list[Setup] = []
 
-    result = fit(setup, photo=photo, starts_for=starts_for, on_state=told.append)
-    fit(setup, photo=photo, on_state=alone.append)
-    assert [state.started for state in (*told, *alone)] == [True] * len(told) + [False] * len(alone)
+    def few(setup: Setup, target: Target, **more: Any) -> tuple[Start, ...]:
+        asked.append(setup)
+        return starts_from(setup, target, **more)[:8]
+
+    monkeypatch.setattr("voldetail.fit.fitter.starts_from", few)
+    result = fit(setup, photo=photo, on_state=started.append)
+    without = setup.model_copy(update={"fit": setup.fit.model_copy(update={"library": "none"})})
+    fit(without, photo=photo, on_state=alone.append)
+    assert [state.started for state in (*started, *alone)] == [True] * len(started) + [False] * len(alone)
     assert result.detail.provenance is not None
     assert result.detail.provenance.settings["library"] == setup.fit.library
     kinds = {start.kind for start in starts_from(setup, make_target(setup, photo))[:8]}
-    assert {candidate.kind for state in told for candidate in state.pool} <= kinds
+    assert {candidate.kind for state in started for candidate in state.pool} <= kinds
     # A state that knows of no starts goes on without, whatever the setup says now.
-    asked: list[Setup] = []
-    fit(setup, photo=photo, start=alone[-1], starts_for=lambda setup, target: asked.append(setup) or ())
+    asked.clear()
+    fit(setup, photo=photo, start=alone[-1])
     assert not asked
-    fit(setup, photo=photo, start=told[-1], starts_for=lambda setup, target: asked.append(setup) or starts_for(setup, target))
+    fit(setup, photo=photo, start=started[-1])
     assert len(asked) == 1
 
 

@@ -20,8 +20,7 @@ from voldetail.fit.target import make_target
 from voldetail.image import Photo, load_photo, luminance
 from voldetail.render.build import build
 from voldetail.render.unit_components import components
-from voldetail.setup.lamp import lamp_of
-from voldetail.setup.light import parse_light
+from voldetail.setup.light import lamp_of, parse_light
 from voldetail.setup.setup import FitSettings, PhotoSetup, Setup
 
 SIDE = 64
@@ -66,8 +65,8 @@ def test_a_fitted_medium_is_whole(cloud: FitResult) -> None:
     assert detail.mode == "volume"
     assert detail.medium is not None
     assert rounded(detail) == detail
-    assert [told.key for told in cloud.told] == list(NUMBERS)
-    for told in cloud.told:
+    assert [told.key for told in cloud.identifiability] == list(NUMBERS)
+    for told in cloud.identifiability:
         assert told.least <= told.low <= told.value <= told.high <= told.most
     assert detail.provenance is not None
     assert detail.provenance.settings["background"] == pytest.approx(cloud.background, rel=1e-3)

@@ -98,7 +98,7 @@ def single_octave(
     return total
 
 
-def highest_grain(
+def highest_stone(
     x: Floats, salt: int, facets: float, elongation: float, spread: float, rounded: bool
 ) -> tuple[Floats, NDArray[np.uint32]]:
     """Height (N,) and hash word (N,) of the body on top, from all cells within three of a position."""
@@ -120,7 +120,7 @@ def highest_grain(
     sizes = np.abs(w)
     angular = math.hypot(1.0, 0.5) * np.maximum(sizes.max(-1), sizes.sum(-1) / 1.5)
     gauge = (1 - facets) * np.linalg.norm(w, axis=-1) + facets * angular
-    share = gauge / (stones.GRAIN_RADIUS[x.shape[1]] * (1 - spread * drawn[0]))
+    share = gauge / (stones.STONE_RADIUS[x.shape[1]] * (1 - spread * drawn[0]))
     height = 1 - share ** (2 if rounded else 1)
     top = height.argmax(1)
     rows = np.arange(len(x))

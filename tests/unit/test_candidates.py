@@ -28,10 +28,10 @@ def test_every_pair_of_ranks_gets_its_share_and_every_vector_is_a_detail() -> No
     assert min(ranks.count(pair) for pair in PAPER_NEIGHBOURS) >= 216 / 4 * 0.7
     assert {c.kind.fold for c in found} == {"none", "ridge", "billow"}
     assert {c.kind.envelope for c in found} == {"gaussian", "exponential"}
-    assert all((c.kind.first, c.kind.last) == (1, 2) for c in found if c.kind.grains)
+    assert all((c.kind.first, c.kind.last) == (1, 2) for c in found if c.kind.bordered)
     assert all((c.kind.first, c.kind.last) == (1, 50) for c in found if c.kind.stones)
     assert any(c.kind.stones for c in found)
-    assert all(c.kind.grains for c in found if c.kind.plates)
+    assert all(c.kind.bordered for c in found if c.kind.plates)
     assert any(c.kind.plates for c in found)
     for candidate in found:
         assert candidate.vector.min() >= 0
@@ -50,7 +50,7 @@ def test_the_same_seed_gives_the_same_and_another_one_others() -> None:
 def test_without_extensions_there_is_only_what_the_paper_has() -> None:
     for candidate in sampled(SPACE, 100, 3, ROUND, extended=False):
         kind = candidate.kind
-        assert (kind.fold, kind.grains, kind.pigment, kind.stones, kind.plates) == ("none", *[False] * 4)
+        assert (kind.fold, kind.bordered, kind.pigment, kind.stones, kind.plates) == ("none", *[False] * 4)
 
 
 def test_the_stretch_of_the_photo_is_where_some_start() -> None:

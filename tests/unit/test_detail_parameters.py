@@ -17,7 +17,6 @@ from voldetail.detail import (
     ReliefParameters,
     bounds,
     describe_in_words,
-    help_text,
     parameter,
     schema,
     summary,
@@ -91,12 +90,6 @@ def test_unknown_keys_name_the_nearest() -> None:
         bounds("noise.scael")
     with pytest.raises(InputError, match="one of solid, surface"):
         bounds("noise.domain")
-
-
-def test_help_has_symbol_range_unit_and_default() -> None:
-    text = help_text("noise.scale")
-    for part in ("s:", "0.2 to 400 cells per scene unit", "default 10"):
-        assert part in text
 
 
 def test_start_curves() -> None:

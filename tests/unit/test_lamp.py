@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from voldetail.backend import mitsuba
 from voldetail.errors import InputError
-from voldetail.setup.lamp import Lamp, flash_foot, lamp_of
-from voldetail.setup.light import parse_light
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import lamp_of, parse_light
+from voldetail.setup.lights.flash import flash_foot
 from voldetail.setup.setup import Light
 
 
@@ -67,17 +68,39 @@ def test_the_fall_off_on_a_plane_in_closed_form() -> None:
     assert Lamp(direction=(0.6, 0.0, 0.8), strength=2.0).on_plane(x, y) == pytest.approx(1.6)
 
 
-@pytest.mark.parametrize("lamp", [Lamp(position=(0.3, -0.2, 1.5), strength=0.7), Lamp(direction=(0.6, 0.0, 0.8))])
+@pytest.mark.parametrize(
+    "lamp", [
+        Lamp(position=(0.3, -0.2, 1.5), strength=0.7), Lamp(direction=(0.6, 0.0, 0.8)),
+        Lamp(position=(0.3, -0.2, 1.5), strength=0.7, axis=(0.0, 0.6, -0.8), cone=0.7),
+    ],
+)
 def test_on_a_plane_and_at_points_are_the_same_light(lamp: Lamp) -> None:
     mi = mitsuba()
     x, y = np.random.default_rng(3).uniform(-1, 1, (2, 50)).astype(np.float32)
     direction, distance, irradiance = lamp.at(mi.Point3f(x, y, np.zeros(50, np.float32)))
     seen = np.broadcast_to(np.array(direction.z) * np.array(irradiance), 50)  # a distant light is one number
-    assert seen == pytest.approx(lamp.on_plane(x, y), rel=1e-5)
+    assert seen == pytest.approx(lamp.on_plane(x, y), rel=1e-5, abs=1e-6)
     assert np.linalg.norm(np.array(direction), axis=0) == pytest.approx(1.0, rel=1e-5)
     if lamp.position is not None:
         expected = np.linalg.norm(np.array([x - 0.3, y + 0.2, np.full(50, 1.5)]), axis=0)
         assert np.array(distance) == pytest.approx(expected, rel=1e-5)
+
+
+def test_a_spot_light_is_bright_in_its_beam_and_dark_beyond_its_cone() -> None:
+    lamp = lamp_of(parse_light("spot:0,0,2@0,0,0,40"))
+    angles = np.radians([0.0, 29.9, 35.0, 40.1, 60.0])
+    x = (2.0 * np.tan(angles)).astype(np.float32)
+    # Half of the way from 30 degrees (3/4 of 40) to 40 half of the strength is left; a point light's fall-off is cos^3.
+    share = lamp.on_plane(x, np.zeros_like(x)) / np.cos(angles) ** 3
+    assert share == pytest.approx([1.0, 1.0, 0.5, 0.0, 0.0], abs=1e-5)
+    assert lamp.emitter((1.0, 1.0, 1.0))["cutoff_angle"] == pytest.approx(40.0)
+    turned = lamp_of(parse_light("spot:0,0,2@2,0,0,40"))  # its middle is 45 degrees to the right
+    assert turned.on_plane(np.float32([2.0, -2.0]), np.float32([0.0, 0.0])) == pytest.approx([2.0**-1.5, 0.0], abs=1e-6)
+
+
+def test_a_spot_light_needs_somewhere_to_shine() -> None:
+    with pytest.raises(InputError, match="aimed at the place where it stands"):
+        lamp_of(parse_light("spot:0,0,2@0,0,2,40"))
 
 
 def test_auto_is_no_lamp() -> None:

@@ -43,12 +43,12 @@ def test_the_vector_holds_what_the_metric_measures_with_its_weights() -> None:
     a, b = (gabor.measure(Layers((s,), (None,)), {}) for s in pictures)
     u, v = (vector_of(s) for s in pictures)
     assert u.shape == (750,)
-    expected = sum(gabor.compare(a[part], b[part], gabor.weights()[part]) for part in gabor.NAMES)
+    expected = sum(float(gabor.apart(a[part], b[part], gabor.weights()[part])) for part in gabor.NAMES)
     assert distance(u, v) ** 2 == pytest.approx(expected, rel=1e-5)
     by_scale = [np.sum((weights() * (u - v).astype(float))[scales() == scale] ** 2) for scale in range(gabor.SCALES)]
     for scale, found in enumerate(by_scale):
         part = f"scale {scale}"
-        assert found == pytest.approx(gabor.compare(a[part], b[part], gabor.weights()[part]), rel=1e-5)
+        assert found == pytest.approx(float(gabor.apart(a[part], b[part], gabor.weights()[part])), rel=1e-5)
 
 
 def test_the_distance_of_two_gaussians_is_their_wasserstein_distance() -> None:

@@ -7,10 +7,10 @@ import pytest
 
 from voldetail.errors import InputError
 from voldetail.image import resize, to_srgb
-from voldetail.library import distance, entries, familiarity, picture, query, rank, recolour, table, texture_of, vector_of
+from voldetail.library import distance, entries, novelty_of, picture, query, rank, recolour, table, texture_of, vector_of
 from voldetail.library.groups import Group
-from voldetail.library.query import ALL_SCALES_SIDE
 from voldetail.library.span import span_of, spanned
+from voldetail.metric.gabor import REACH, SIGMAS
 from voldetail.texture.structures import MODELS, structure
 
 SIDE = 128
@@ -45,7 +45,8 @@ def test_a_photo_is_brought_to_the_size_of_entries_and_a_small_one_is_left() -> 
     small = query(large[:100, :100])
     assert small.photo.shape == (100, 100, 3)
     assert (small.scale, small.missing) == (1.0, 1)
-    assert query(large[:ALL_SCALES_SIDE, :ALL_SCALES_SIDE]).missing == 0
+    fits = int(np.ceil(2 * REACH * SIGMAS[-1]))  # the coarsest filters
+    assert query(large[:fits, :fits]).missing == 0
     assert query(large[:100, :100], scale=2.0).photo.shape == (200, 200, 3)
 
 
@@ -147,20 +148,20 @@ def test_a_stranger_is_told_from_a_picture_of_the_model(groups: dict[str, Group]
     told = []
     for s in (own, noise):
         best = rank({"brick": groups["brick"]}, vector_of(s), 1).answers[0]
-        found = familiarity(groups["brick"], best, side=SIDE)
+        found = novelty_of(groups["brick"], best, side=SIDE)
         assert found is not None
         assert found.distance == best.distance
-        assert found.known == (not found.sentence)
+        assert found.novel == bool(found.sentence)
         told.append(found)
-    assert told[0].known
-    assert not told[1].known
+    assert not told[0].novel
+    assert told[1].novel
     assert f"{told[1].distance:.3f} away" in told[1].sentence
     # The yardstick is of the model and the library, and not of what is asked for.
     assert told[0].farthest == told[1].farthest
-    assert familiarity(groups["brick"], replace(best, model="relief")) is None
+    assert novelty_of(groups["brick"], replace(best, model="relief")) is None
     # Three entries are a coarser library, in which pictures are farther from their nearest.
     few = replace(groups["brick"], values=groups["brick"].values[:3], table=table(groups["brick"].table.vectors[:3]))
-    coarse = familiarity(few, best, side=SIDE)
+    coarse = novelty_of(few, best, side=SIDE)
     assert coarse is not None
     assert coarse.farthest > told[0].farthest
 

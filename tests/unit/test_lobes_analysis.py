@@ -1,18 +1,37 @@
 """From a channel to its lobes: known spectra are recovered, variances add up, masks count, and what is refused."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
 from lobes_reference import noise
+from numpy.typing import NDArray
 
 from voldetail.detail.colour import Lobe
 from voldetail.errors import InputError
-from voldetail.texture.lobes import LEAST_BLUR, lobe_rows, lobes_of, lobes_power
-from voldetail.texture.mixture import binned, divergence, first_pairs, fit_pairs
+from voldetail.texture.lobes import LEAST_BLUR, lobe_rows, lobes_of
+from voldetail.texture.mixture import TINY, Bins, Pairs, _halves, binned, first_pairs, fit_pairs
 from voldetail.texture.spectrum import power_spectrum
 
 TWO = np.array([[0.1, 0.5, 0.02, 0.01, 0.7], [0.22, 2.2, 0.03, 0.03, 0.3]])
+
+
+def lobes_power(lobes: Sequence[Lobe], fx: NDArray[np.float64], fy: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return S(f), variance per (cycle per texel)^2, of the lobes' sum at the frequencies ``fx``, ``fy`` (one shape)."""
+    total = np.zeros(np.broadcast_shapes(fx.shape, fy.shape))
+    for frequency, angle, along, across, variance in lobe_rows(lobes):
+        c, s = math.cos(angle), math.sin(angle)
+        u, w = fx * c + fy * s, (fy * c - fx * s) / across
+        halves = np.exp(-0.5 * ((u - frequency) / along) ** 2) + np.exp(-0.5 * ((u + frequency) / along) ** 2)
+        total += variance / (4 * math.pi * along * across) * halves * np.exp(-0.5 * w**2)
+    return total
+
+
+def divergence(bins: Bins, pairs: Pairs) -> float:
+    """Return sum_n p_n log(1 / density_n), nats: the Kullback-Leibler divergence but for what no pairs can change."""
+    plus, minus = _halves(bins, pairs)
+    return float(-(bins.power * np.log(np.maximum(plus.sum(1) + minus.sum(1), TINY))).sum())
 
 
 def picture(rows: np.ndarray, side: int = 256, seed: int = 1) -> np.ndarray:

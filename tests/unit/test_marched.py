@@ -12,8 +12,9 @@ from voldetail.backend import mitsuba
 from voldetail.field.medium import Medium
 from voldetail.fit.reflectance import solve
 from voldetail.geometry.density_grid import DensityGrid
+from voldetail.render import marched
 from voldetail.render.marched import MarchedVolume
-from voldetail.render.unit_components import Components, components, marched
+from voldetail.render.unit_components import Components, components
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.view import View
 

@@ -10,6 +10,7 @@ from skimage import data
 from voldetail.errors import InputError
 from voldetail.image import to_linear
 from voldetail.metric import METRICS, describe, distance, distance_by_level
+from voldetail.metric.descriptor import FORMER_NAMES
 
 every_metric = pytest.mark.parametrize("metric", METRICS)
 
@@ -105,7 +106,7 @@ def small_mask() -> np.ndarray:
         ({"luminance": gravel(), "mask": np.ones((128, 128), np.uint8)}, "must be boolean"),
         ({"luminance": gravel(), "mask": np.zeros((128, 128), bool)}, "smaller than the metric's filters"),
         ({"luminance": gravel(), "mask": small_mask()}, "smaller than the metric's filters"),
-        ({"luminance": gravel(), "metric": "euclid"}, "choose one of"),
+        ({"luminance": gravel(), "metric": "euclid"}, "use one of"),
     ],
 )
 def test_unusable_input_is_refused_in_one_sentence(arguments: dict[str, object], words: str) -> None:
@@ -118,4 +119,10 @@ def test_descriptors_of_different_references_are_not_compared() -> None:
     with pytest.raises(InputError, match="like="):
         distance(describe(gravel(), metric="published"), describe(grass(), metric="published"))
     with pytest.raises(InputError, match="like="):
-        distance(describe(gravel(), metric="published"), describe(gravel(), metric="tone"))
+        distance(describe(gravel(), metric="published"), describe(gravel(), metric="marginals"))
+
+
+@pytest.mark.parametrize(("former", "name"), FORMER_NAMES.items())
+def test_former_names_are_still_known(former: str, name: str) -> None:
+    assert former not in METRICS
+    assert describe(gravel(), metric=former).metric == describe(gravel(), metric=name).metric == name

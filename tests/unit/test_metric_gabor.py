@@ -6,7 +6,7 @@ from skimage import data
 
 from voldetail.image import to_linear
 from voldetail.metric import describe, distance
-from voldetail.metric.gabor import CYCLES, NAMES, ORIENTATIONS, SIGMAS, compare, cycles, measure, weights
+from voldetail.metric.gabor import CYCLES, NAMES, ORIENTATIONS, SIGMAS, apart, cycles, measure, weights
 from voldetail.metric.layers import layers
 from voldetail.metric.sensitivity import contrast_sensitivity
 
@@ -109,8 +109,8 @@ def test_a_wave_answers_where_it_belongs() -> None:
 
 def test_gaussians_are_compared_by_the_closed_form() -> None:
     one, other = np.array([[0.3, 0.1], [0.2, 0.4]]), np.array([[0.1, 0.1], [0.3, np.nan]])
-    assert compare(one, other, None) == pytest.approx(0.2**2 + 0.1**2)  # what one of them lacks is left out
-    assert compare(one, other, np.array([[2.0, 5.0]])) == pytest.approx(4 * (0.2**2 + 0.1**2))
+    assert apart(one, other, None) == pytest.approx(0.2**2 + 0.1**2)  # what one of them lacks is left out
+    assert apart(one, other, np.array([[2.0, 5.0]])) == pytest.approx(4 * (0.2**2 + 0.1**2))
 
 
 def test_a_small_picture_has_the_scales_that_fit() -> None:

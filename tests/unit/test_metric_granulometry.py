@@ -76,7 +76,7 @@ def test_nothing_outside_the_mask_counts() -> None:
     mask[:, :80] = True
     spoiled = values.copy()
     spoiled[:, 80:] = np.random.default_rng(3).random((SIDE, SIDE - 80))
-    for metric in ("granulometry", "swells"):
+    for metric in ("granulometry", "low-pass"):
         reference = describe(picture(values), mask, metric=metric)
         found = distance_by_level(reference, describe(picture(spoiled), mask, like=reference))
         # The pyramid's own blur reaches a pixel or two over the border at the coarser levels.
@@ -88,7 +88,7 @@ def test_a_swell_is_seen_at_its_wavelength_and_not_by_what_is_finer() -> None:
     y = np.arange(192)[:, None] * np.ones((1, 192))
     grain = 0.05 * np.random.default_rng(4).standard_normal((192, 192))
     flat = picture(0.5 + grain)
-    reference = describe(flat, metric="swells")
+    reference = describe(flat, metric="low-pass")
 
     def parts(wavelength: float) -> dict[str, float]:
         wave = 0.1 * np.sin(2 * np.pi * y / wavelength)

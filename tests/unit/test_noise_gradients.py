@@ -14,7 +14,7 @@ mi: ModuleType = mitsuba()  # before Dr.Jit is imported, which would pick an LLV
 import drjit as dr  # noqa: E402
 from drjit.llvm.ad import Float64  # noqa: E402
 
-from voldetail.noise import GrainShape, NoiseSettings, feature_point, relief_function, single_octave  # noqa: E402
+from voldetail.noise import NoiseSettings, StoneShape, feature_point, relief_function, single_octave  # noqa: E402
 
 COUNT = 200
 STEP = 1e-6
@@ -51,7 +51,7 @@ def relief(case: Case, offsets: dict[str, Any], **changed: float) -> Any:
     dims, first, last, octaves, gaussian, stones = case
     float_type: Any = type(offsets["x"])
     values = {key: dr.opaque(float_type, v) + offsets[key] for key, v in (VALUES | changed).items()}
-    shape = GrainShape(*(values.pop(name) for name in STONES))
+    shape = StoneShape(*(values.pop(name) for name in STONES))
     points = tuple(float_type(POINTS[axis]) + offsets["xyz"[axis]] for axis in range(dims))
     curve = float_type(CURVE)
     for name in NAMES[-3:]:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from voldetail.geometry.proxy import Proxy, make_proxy
 from voldetail.geometry.topology import crosses, edges, signed_volume, weld
 from voldetail.setup.setup import ProxySetup
+from voldetail.setup.shapes import SIMPLE_KINDS
 
 EDGE = 0.08
 
@@ -20,7 +21,7 @@ def face_directions(shape: Proxy) -> NDArray[np.float64]:
     return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
 
 
-@pytest.mark.parametrize("kind", ["plane", "sphere", "ellipsoid", "box", "cylinder"])
+@pytest.mark.parametrize("kind", list(SIMPLE_KINDS))
 def test_edges_are_short_and_normals_unit_and_outward(kind: str) -> None:
     shape = proxy(kind=kind)
     ends = shape.positions[shape.faces]
@@ -114,3 +115,38 @@ def test_the_surface_domain_of_a_cylinder_is_unrolled() -> None:
     assert shape.domain[front, 0] == pytest.approx(angle * 0.5, abs=1e-5)
     assert shape.domain[front, 1] == pytest.approx(shape.positions[front, 1])
     assert (shape.domain[:, 2] == 0).all()
+
+
+def test_a_torus_in_closed_form() -> None:
+    shape = proxy(kind="torus", size=(1.8, 1.8, 0.6))
+    x, y, z = shape.positions.astype(np.float64).T
+    around = np.hypot(x, y) - 0.6
+    assert np.hypot(around, z) == pytest.approx(0.3, abs=1e-6)
+    outward = np.stack([x * around / np.hypot(x, y), y * around / np.hypot(x, y), z], axis=1) / 0.3
+    assert shape.normals == pytest.approx(outward, abs=1e-5)
+    volume = signed_volume(shape.positions.astype(np.float64), shape.faces.astype(np.int64))
+    assert volume == pytest.approx(2 * np.pi**2 * 0.6 * 0.3**2, rel=0.01)  # Pappus
+
+
+@pytest.mark.parametrize(
+    ("size", "says"), [((2.0, 1.8, 0.5), "as wide as it is high"), ((2.0, 2.0, 1.0), "less than half of its width")]
+)
+def test_a_torus_is_round_and_has_a_hole(size: tuple[float, float, float], says: str) -> None:
+    with pytest.raises(ValueError, match=says):
+        ProxySetup(kind="torus", size=size)
+
+
+def test_an_unknown_kind_is_no_box() -> None:
+    unknown = ProxySetup.model_construct(kind="cone", size=(1.0, 1.0, 1.0), rotation=(0, 0, 0), position=(0, 0, 0), mesh=None)
+    with pytest.raises(ValueError, match="no kind of shape 'cone'"):
+        make_proxy(unknown, 0.1)
+
+
+def test_a_cylinder_has_no_slivers() -> None:
+    shape = proxy(kind="cylinder", edge=0.02)
+    corners = shape.positions[shape.faces].astype(np.float64)
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+    area = np.linalg.norm(crosses(shape.positions.astype(np.float64), shape.faces.astype(np.int64)), axis=1) / 2
+    upright = np.abs(shape.normals[shape.faces][:, :, 1]).max(axis=1) < 0.5
+    # An equilateral triangle has 0.43 of its longest side squared, a right-angled isosceles one 0.25.
+    assert np.median((area / sides.max(axis=1) ** 2)[upright]) > 0.2

@@ -14,16 +14,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from voldetail.apply.gallery import Gallery
 from voldetail.detail import Detail, NoiseFloor
-from voldetail.fit.colour import ColourChoice
-from voldetail.fit.fitter import FitResult
-from voldetail.fit.identifiability import Told
-from voldetail.fit.interval import AmplitudeInterval
 from voldetail.image import Photo
 from voldetail.report import write_report
 from voldetail.report.facts import amplitude_words, duration, facts, light_words, medium_words
 from voldetail.report.page import page
+from voldetail.results import AmplitudeInterval, ColourChoice, FitResult, Gallery, Identifiability
 from voldetail.setup.file import setup_from
 from voldetail.setup.light import parse_light
 
@@ -237,16 +233,17 @@ def test_an_amplitude_without_an_interval_says_why() -> None:
 
 def test_a_medium_is_told_number_by_number() -> None:
     told = (
-        Told("medium.extinction", 12.0, 8.0, 48.0, 3.0, 48.0), Told("medium.thickness", 0.2, 0.1, 0.3, 0.05, 0.8),
-        Told("medium.albedo", 0.99, 0.2, 1.0, 0.2, 1.0),
+        Identifiability("medium.extinction", 12.0, 8.0, 48.0, 3.0, 48.0),
+        Identifiability("medium.thickness", 0.2, 0.1, 0.3, 0.05, 0.8),
+        Identifiability("medium.albedo", 0.99, 0.2, 1.0, 0.2, 1.0),
     )
-    words = medium_words(result(told=told))
+    words = medium_words(result(identifiability=told))
     assert words == (
         "extinction 12 (8 to 48 or more), shell thickness 0.2 (0.1 to 0.3); the photo does not tell scattering albedo"
     )
-    assert dict(facts(result(told=told)))["Medium"] == words
-    assert "Amplitude" not in dict(facts(result(told=told)))
-    assert medium_words(result(told=told[2:])) == "none of its numbers is told"
+    assert dict(facts(result(identifiability=told)))["Medium"] == words
+    assert "Amplitude" not in dict(facts(result(identifiability=told)))
+    assert medium_words(result(identifiability=told[2:])) == "none of its numbers is told"
 
 
 def test_colour_and_evenness_are_told() -> None:

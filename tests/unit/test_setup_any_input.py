@@ -15,7 +15,8 @@ from voldetail.setup.file import (
     setup_from_text,
     setup_to_toml,
 )
-from voldetail.setup.setup import DEFAULT_SIZES, Setup
+from voldetail.setup.setup import Setup
+from voldetail.setup.shapes import SHAPES
 
 SMALL = """
 light = "70,50"
@@ -35,7 +36,7 @@ def setups(draw: st.DrawFn) -> dict[str, Any]:
         )
         | st.fixed_dictionaries({"kind": st.just("flash"), "height": st.floats(0.05, 100)})
     )
-    kind = draw(st.sampled_from([k for k in DEFAULT_SIZES if k != "mesh"]))
+    kind = draw(st.sampled_from([k for k in SHAPES if k != "mesh"]))
     return {
         "photo": {"path": draw(TEXT), "zone": draw(st.none() | st.tuples(*[st.integers(32, 5000)] * 4))},
         "mask": draw(st.none() | TEXT),

@@ -14,7 +14,8 @@ from voldetail.setup.file import (
     setup_to_toml,
 )
 from voldetail.setup.light import parse_light
-from voldetail.setup.setup import DEFAULT_SIZES, CameraSetup, ProxySetup
+from voldetail.setup.setup import CameraSetup, ProxySetup
+from voldetail.setup.shapes import SHAPES
 
 SMALL = """
 light = "70,50"
@@ -143,7 +144,7 @@ def test_an_override_cannot_smuggle_in_another_key() -> None:
         ("light=90,-5", "behind the surface"),
         ("light.direction=[0, 0, nan]", "light.direction[2] = nan is not a finite number"),
         ("light.direction=[1, 1, 0]", "behind the surface"),
-        ("light.kind=spot", "light.kind = 'spot' is not known; allowed: one of directional, point, flash"),
+        ("light.kind=sun", "light.kind = 'sun' is not known; allowed: one of directional, point, spot, flash"),
         ("light.kind=flash", "direction belongs to a light of kind"),
         ("proxy.kind=mesh", "needs the path of a mesh file"),
         ("proxy.mesh=rock.ply", 'set proxy.kind to "mesh"'),
@@ -229,7 +230,7 @@ def test_default_distance_fills_the_view() -> None:
     assert 2 * camera.distance_used * math.tan(math.radians(90) / 2) == pytest.approx(2)
 
 
-@pytest.mark.parametrize("kind", list(DEFAULT_SIZES))
+@pytest.mark.parametrize("kind", list(SHAPES))
 def test_default_sizes_are_about_two_across(kind: str) -> None:
     mesh = "rock.ply" if kind == "mesh" else None
     proxy = ProxySetup.model_validate({"kind": kind, "mesh": mesh})

@@ -51,6 +51,9 @@ def test_flash_and_point() -> None:
         ("45", "has 1 numbers where 2 or 3 are wanted"),
         ("1,2,3,4", "has 4 numbers"),
         ("point:1,2", "has 2 numbers where 3 are wanted"),
+        ("spot:1,2,3", "not understood"),
+        ("spot:1,2,3@0,0,0", "has 3 numbers where 4 are wanted"),
+        ("spot:1,2,3@0,0,0,86", "angle = 86.0 is out of range"),
         ("flash@1,2,3,4", "has 4 numbers where 1 or 2 or 3"),
         ("0,0,0", "zero"),
         ("nan,45", "not finite"),
@@ -78,6 +81,8 @@ def test_refusals(text: str, says: str) -> None:
     [
         {"kind": "directional"},
         {"kind": "point"},
+        {"kind": "spot", "position": (0, 0, 1), "angle": 20},
+        {"kind": "point", "position": (0, 0, 1), "target": (0, 0, 0)},
         {"kind": "flash", "direction": (0, 0, 1)},
         {"kind": "directional", "direction": (0, 0, 1), "foot": (0.5, 0.5)},
         {"kind": "point", "position": (0, 0, 1), "direction": (0, 0, 1)},
@@ -100,7 +105,7 @@ def test_angles_and_direction_are_inverse(azimuth: float, elevation: float) -> N
     assert back[1] == pytest.approx(elevation)
 
 
-@pytest.mark.parametrize("text", ["70,50", "auto", "flash@1", "flash@0.25,0.75,2", "point:1,-2,3"])
+@pytest.mark.parametrize("text", ["70,50", "auto", "flash@1", "flash@0.25,0.75,2", "point:1,-2,3", "spot:1,-2,3@0,0.5,0,25"])
 def test_text_of_a_light_is_what_was_typed(text: str) -> None:
     assert light_text(parse_light(text)) == text
 

@@ -22,6 +22,7 @@ from voldetail.field.shell import Shell, make_shell  # noqa: E402
 from voldetail.field.shell_plan import DEFAULT_BUDGET, plan_shell  # noqa: E402
 from voldetail.geometry import signed_distance  # noqa: E402
 from voldetail.geometry.mesh_distance import mesh_distance, squared_distances, winding_numbers  # noqa: E402
+from voldetail.geometry.primitives.primitive import primitive_of  # noqa: E402
 from voldetail.setup.setup import ProxySetup  # noqa: E402
 
 RNG = np.random.default_rng(5)
@@ -53,6 +54,7 @@ SHAPES: dict[str, signed_distance.Distance] = {
     "box": signed_distance.box((1.0, 0.6, 0.4)),
     "cylinder": signed_distance.cylinder((0.7, 1.0, 0.7)),
     "oval": signed_distance.cylinder((0.9, 1.0, 0.5)),
+    "torus": primitive_of(ProxySetup(kind="torus", size=(1.8, 1.8, 0.6))).distance(),
 }
 
 
@@ -70,6 +72,14 @@ def test_a_distance_never_changes_faster_than_one_moves(name: str) -> None:
     gap = np.abs(evaluated(SHAPES[name])[0] - evaluated(SHAPES[name], other)[0])
     assert (gap <= np.linalg.norm(POINTS - other, axis=1) + 1e-5).all()
     assert gap.max() > 0.5
+
+
+def test_distances_to_a_torus_by_hand() -> None:
+    # R = 0.6, r = 0.3. Over the tube's middle, in the hole's middle, beyond the rim along (3, 4, 0) / 5, inside the tube.
+    points = np.array([[0.6, 0.0, 0.5], [0.0, 0.0, 0.8], [0.72, 0.96, 0.0], [0.0, -0.7, 0.0]])
+    s, n = evaluated(SHAPES["torus"], points)
+    assert s == pytest.approx([0.2, 0.7, 0.3, -0.2], abs=1e-6)
+    assert n[2] == pytest.approx([0.6, 0.8, 0.0], abs=1e-6)
 
 
 def test_distances_to_an_ellipsoid_are_those_of_an_optimiser() -> None:
@@ -146,7 +156,7 @@ def test_interpolated_distances_are_linear_between_the_middles() -> None:
     assert n == pytest.approx(np.tile(np.array([0.3, -0.4, 1.2]) / 1.3, (200, 1)), abs=1e-4)
 
 
-@pytest.mark.parametrize("kind", ["plane", "sphere", "ellipsoid", "box", "cylinder"])
+@pytest.mark.parametrize("kind", ["plane", "sphere", "ellipsoid", "box", "cylinder", "torus"])
 def test_density_falls_from_one_to_zero_over_the_shell_and_is_half_on_the_surface(kind: str) -> None:
     shell = shell_of(kind=kind, rotation=(20, 30, 0), position=(0.1, 0.2, -0.3))
     grid = shell.bake()

@@ -2,28 +2,36 @@
 
 import itertools
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from voldetail.detail import PAPER_NEIGHBOURS, START_CURVES, bounds, load_detail, rounded, save_detail
+from voldetail.detail import (
+    PAPER_NEIGHBOURS,
+    PARAMETERS,
+    START_CURVES,
+    bounds,
+    load_detail,
+    parameter,
+    parameters_of,
+    rounded,
+    save_detail,
+)
 from voldetail.detail.record import Detail
+from voldetail.fit.candidates import DIMENSIONS
 from voldetail.fit.profiles import FOLDS, SHAPE_COUNT, fold, profile, shape_of
 from voldetail.fit.ranges import (
-    ELONGATION,
-    FOLD_HANDICAP,
-    PIGMENT_HANDICAP,
-    PLATE_BEVEL,
-    PLATE_HEIGHT,
-    PLATE_TILT,
+    FOLD_PENALTY,
+    PIGMENT_PENALTY,
     SHAPE_RANGE,
     STONE_GAIN,
     STONE_HEIGHT,
 )
 from voldetail.fit.space import Kind, Space
+from voldetail.noise import OCTAVE_NUMBERS, PlateShape, StoneShape
 
 SPACE = Space("solid", (1.0, 60.0), 120.0)
 KINDS = st.builds(
@@ -67,7 +75,7 @@ def test_every_vector_is_a_valid_detail_of_its_kind(
     if not kind.pigment:
         pigment = detail.reflectance
         assert (pigment.height_albedo, pigment.cell_albedo, pigment.speckle) == (0.0, 0.0, 0.0)
-    assert (noise.weights[1] < 0) == kind.grains
+    assert (noise.weights[1] < 0) == kind.bordered
     assert (noise.joining == "highest") == kind.stones
     if not kind.plates:
         assert (noise.cell_height, noise.cell_tilt) == (0.0, 0.0)
@@ -124,17 +132,46 @@ def test_stones_are_as_high_as_wide_and_rise_steeply_from_narrow_gaps() -> None:
     assert low.noise.curve == pytest.approx(np.linspace(0, 1, 11))
     assert np.diff(high.noise.curve)[0] > 5 * np.diff(high.noise.curve)[-1]
     assert (low.noise.gain, high.noise.gain) == pytest.approx(STONE_GAIN)
-    assert (low.noise.elongation, high.noise.elongation) == pytest.approx(ELONGATION)
+    assert (low.noise.elongation, high.noise.elongation) == pytest.approx(parameter("noise.elongation").searched)
     assert (low.relief.amplitude * low.noise.scale) == pytest.approx(STONE_HEIGHT[0])
 
 
 def test_plates_have_a_height_a_tilt_and_a_bevel() -> None:
-    kind = Kind(1, 2, "gaussian", 1, False, grains=True, plates=True)
+    kind = Kind(1, 2, "gaussian", 1, False, bordered=True, plates=True)
     low, high = (SPACE.decode(kind, np.full(len(SPACE.names(kind)), v)).noise for v in (0.0, 1.0))
-    for end, noise in enumerate((low, high)):
-        found = (noise.cell_height, noise.cell_tilt, noise.bevel)
-        assert found == pytest.approx((PLATE_HEIGHT[end], PLATE_TILT[end], PLATE_BEVEL[end]))
+    for declaration in parameters_of("plates"):
+        assert (getattr(low, declaration.name), getattr(high, declaration.name)) == pytest.approx(declaration.searched)
     assert len(SPACE.names(kind)) == len(SPACE.names(replace(kind, plates=False))) + 3
+
+
+def test_a_number_of_the_noise_is_a_parameter_and_is_searched_with_its_part() -> None:
+    """A field of the noise's own record and a declaration are all that one takes: record, relief and search follow."""
+    stones, plates, striped = (
+        Kind(1, 50, "gaussian", 2, False, stones=True), Kind(1, 2, "gaussian", 2, False, plates=True),
+        Kind(1, 50, "gaussian", 2, True),
+    )  # fmt: skip
+    for part, names, kind in (
+        ("stones", [f.name for f in fields(StoneShape)], stones), ("plates", [f.name for f in fields(PlateShape)], plates),
+        ("stripes", [n for n in OCTAVE_NUMBERS if n.startswith("stripe")], striped),
+    ):  # fmt: skip
+        declared = parameters_of(part)
+        assert [p.name for p in declared] == names
+        assert {p.key for p in declared} <= set(SPACE.names(kind))
+        changed = replace(kind, stones=False, plates=False, striped=False)
+        assert not {p.key for p in declared} & set(SPACE.names(changed))
+        vector = np.full(len(SPACE.names(kind)), 0.7)
+        noise = SPACE.decode(kind, vector).noise
+        assert all(getattr(noise, p.name) == pytest.approx(SPACE.at(p.key, 0.7)) for p in declared)
+
+
+def test_what_covers_a_range_lies_in_it_mostly() -> None:
+    """Samples beyond it are held at its end, which is right for a few and not for half of them."""
+    for declaration in PARAMETERS:
+        if declaration.cover is not None:
+            low, high, _ = SPACE.range_of(declaration.key)
+            values = np.array([declaration.cover.at(u) for u in np.linspace(0, 1, 101)])
+            assert 0 <= declaration.cover.dimension < DIMENSIONS
+            assert ((values >= low - 1e-9) & (values <= high + 1e-9)).mean() > 0.5
 
 
 def test_a_plain_space_has_the_papers_numbers_only() -> None:
@@ -147,12 +184,12 @@ def test_a_plain_space_has_the_papers_numbers_only() -> None:
 
 def test_what_seldom_looks_like_nature_has_to_pay_for_itself() -> None:
     plain = Kind(1, 2, "gaussian", 2, False)
-    assert plain.handicap == 1.0
-    assert Kind(1, 2, "gaussian", 2, True).handicap > 1.0
-    assert Kind(1, 50, "gaussian", 2, True).handicap == 1.0
-    assert Kind(1, 50, "gaussian", 2, False, stones=True).handicap < 1.0
-    assert replace(plain, plates=True).handicap > 1.0
-    assert Kind(1, 2, "gaussian", 2, False, "ridge", False, True).handicap == pytest.approx(FOLD_HANDICAP * PIGMENT_HANDICAP)
+    assert plain.penalty == 1.0
+    assert Kind(1, 2, "gaussian", 2, True).penalty > 1.0
+    assert Kind(1, 50, "gaussian", 2, True).penalty == 1.0
+    assert Kind(1, 50, "gaussian", 2, False, stones=True).penalty < 1.0
+    assert replace(plain, plates=True).penalty > 1.0
+    assert Kind(1, 2, "gaussian", 2, False, "ridge", False, True).penalty == pytest.approx(FOLD_PENALTY * PIGMENT_PENALTY)
 
 
 def test_angles_wrap_and_the_rest_is_clipped() -> None:

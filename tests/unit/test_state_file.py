@@ -53,6 +53,12 @@ def same(a: State, b: State) -> bool:
     )
 
 
+def test_kinds_are_written_by_their_first_names(tmp_path: Path) -> None:
+    setup, path = a_setup(), tmp_path / "state.json"
+    save_state(path, a_state(setup), setup, SHA)
+    assert "grains" in json.loads(path.read_text())["pool"][0]["kind"]
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_comes_back_bit_by_bit(tmp_path: Path, seed: int) -> None:
     setup, path = a_setup(), tmp_path / "state.json"

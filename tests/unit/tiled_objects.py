@@ -10,7 +10,8 @@ import trimesh
 from voldetail.detail import Detail
 from voldetail.field.hypertexture import Hypertexture
 from voldetail.field.shell import make_shell
-from voldetail.field.shell_plan import ShellPlan, plan_shell
+from voldetail.field.shell_grid import ShellPlan
+from voldetail.field.shell_plan import plan_shell
 from voldetail.setup.setup import ProxySetup
 
 SMALL = 240_000_000

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from voldetail.apply.onmesh import KINDS
+from voldetail.apply.onmesh import proxy_of
 from voldetail.apply.volumes import Tell, place, quiet
 from voldetail.detail import Detail
 from voldetail.errors import InputError
 from voldetail.geometry.density_grid import DensityGrid
-from voldetail.setup.setup import ProxySetup
 from voldetail.setup.view import whole_view
 
 LEAST_SIDE, MOST_SIDE = 16, 1024
@@ -30,11 +29,7 @@ def bake(
         raise InputError('The detail displaces a surface and has no density; give one of the mode "volume".')
     if not LEAST_SIDE <= cells <= MOST_SIDE:
         raise InputError(f"The number of cells is {cells}, but has to be {LEAST_SIDE} to {MOST_SIDE}.")
-    kind = str(mesh)
-    if kind in KINDS:
-        proxy = ProxySetup(kind=kind, rotation=rotation)  # type: ignore[arg-type]
-    else:
-        proxy = ProxySetup(kind="mesh", mesh=Path(mesh), rotation=rotation)
+    proxy = proxy_of(mesh, rotation)
     # Seen from so far that nothing of it is beside the window: only what is seen is baked.
     wide = 2.0 + detail.relief.amplitude * scale
     view = whole_view(math.ceil(cells * wide), math.ceil(cells * wide), None, wide)

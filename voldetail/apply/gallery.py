@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +15,7 @@ from voldetail.detail import Detail, with_values
 from voldetail.image import resize
 from voldetail.render.build import build, faces_camera
 from voldetail.render.unit_components import components
+from voldetail.results import FitResult, Gallery
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.light import direction_of
 from voldetail.setup.setup import CameraSetup, Light, PhotoSetup, Setup
@@ -35,28 +35,8 @@ EDGE = 1.5
 """Length of the mesh's edges in pixels: a report's small pictures come in half the time that one pixel would take."""
 
 
-@dataclass(frozen=True)
-class Gallery:
-    """Pictures (H, W, 3), linear.
-
-    photo: the zone at working resolution; mask (H, W): its used pixels; overlay: the whole photo with the zone, the
-    mask and the proxy drawn over it; fitted: the rendering under the photo's light; lights: captions and renderings
-    under four others; grazing: a tilted plane; sphere; mesh with its name.
-    """
-
-    photo: Picture
-    mask: NDArray[np.bool_]
-    overlay: Picture
-    fitted: Picture
-    lights: tuple[tuple[str, Picture], ...]
-    grazing: Picture
-    sphere: Picture
-    mesh: Picture
-    mesh_name: str
-
-
 def gallery(
-    result: Any, on_progress: Callable[[str], None] = lambda what: None, mesh: str | Path = "cylinder"
+    result: FitResult, on_progress: Callable[[str], None] = lambda what: None, mesh: str | Path = "cylinder"
 ) -> Gallery:
     """Return the Gallery of a FitResult; ``mesh`` is the kind of proxy or file for its last picture."""
     detail, setup, target = result.detail, result.setup, result.target

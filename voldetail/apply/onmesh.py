@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,15 +20,15 @@ from voldetail.render.plugins.phong import Diffuse, phong_dict, principled_equiv
 from voldetail.render.traced import emitters_of
 from voldetail.render.unit_components import components, traced_picture
 from voldetail.render.volume import Volume
-from voldetail.setup.lamp import Lamp, lamp_of
-from voldetail.setup.light import direction_of
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import direction_of, lamp_of
 from voldetail.setup.setup import CameraSetup, Light, ProxySetup
+from voldetail.setup.shapes import SHAPES, simple_kind
 from voldetail.setup.view import View, whole_view
 
 Picture = NDArray[np.float32]
 Colour = tuple[float, float, float]
 Shading = Literal["phong", "principled"]
-KINDS: tuple[str, ...] = tuple(k for k in get_args(ProxySetup.model_fields["kind"].annotation) if k != "mesh")
 
 FLAT_MARGIN = 1.0
 """A plane is shown filling the picture."""
@@ -118,11 +118,16 @@ def _default_light() -> Light:
     return Light(direction=direction_of(135.0, 45.0))
 
 
+def _flat(mesh: str | Path) -> bool:
+    kind = simple_kind(str(mesh))
+    return kind is not None and SHAPES[kind].flat
+
+
 def _view(detail: Detail, scale: float, mesh: str | Path, size: tuple[int, int], camera: CameraSetup | None) -> View:
     columns, rows = size
     if not (16 <= columns <= 8192 and 16 <= rows <= 8192):
         raise InputError(f"The size {columns}x{rows} is out of range: each side has to be 16 to 8192 pixels.")
-    if str(mesh) == "plane":
+    if _flat(mesh):
         return whole_view(columns, rows, camera, FLAT_MARGIN)
     rises = 0.0
     if detail.mode == "volume":
@@ -134,13 +139,19 @@ def _view(detail: Detail, scale: float, mesh: str | Path, size: tuple[int, int],
 
 def _proxy(mesh: str | Path, view: View, rotation: tuple[float, float, float]) -> tuple[ProxySetup, bool]:
     """Return the proxy and whether it is the plane that fills the picture and a little more, so that no edge is seen."""
-    kind = str(mesh)
-    if kind == "plane" and rotation == (0.0, 0.0, 0.0):
+    proxy = proxy_of(mesh, rotation)
+    if proxy.row.flat and rotation == (0.0, 0.0, 0.0):
         wide = 2.1 * max(view.right, view.top)
-        return ProxySetup(kind="plane", size=(wide, wide, 0.0)), True
-    if kind in KINDS:
-        return ProxySetup(kind=kind, rotation=rotation), False  # type: ignore[arg-type]
-    return ProxySetup(kind="mesh", mesh=Path(mesh), rotation=rotation), False
+        return proxy.model_copy(update={"size": (wide, wide, 0.0)}), True
+    return proxy, False
+
+
+def proxy_of(mesh: str | Path, rotation: tuple[float, float, float]) -> ProxySetup:
+    """Return the proxy for a kind of shape or a mesh file."""
+    kind = simple_kind(str(mesh))
+    if kind is None:
+        return ProxySetup(kind="mesh", mesh=Path(mesh), rotation=rotation)
+    return ProxySetup(kind=kind, rotation=rotation)
 
 
 def _surface(
@@ -154,7 +165,7 @@ def _surface(
         volume = place(detail, proxy, view, scale=scale, whole_plane=filling, edge=edge * view.pixel, tell=tell)
         return solid_surface(detail, volume, bsdf=bsdf, emitters=emitters, on_progress=on_progress)
     made = make_proxy(proxy, edge * view.pixel, detail.noise.domain)
-    surface = MeshSurface(made, view, scale=scale, bsdf=bsdf, emitters=emitters, one_sided_sky=str(mesh) == "plane")
+    surface = MeshSurface(made, view, scale=scale, bsdf=bsdf, emitters=emitters, one_sided_sky=_flat(mesh))
     surface.update(detail)
     return surface
 

@@ -9,9 +9,11 @@ from typing import Any
 from voldetail.detail import Detail
 from voldetail.errors import InputError
 from voldetail.field.medium import tinted_albedo
-from voldetail.field.shell_plan import OverBudgetError, ShellPlan
+from voldetail.field.shell_grid import ShellPlan
+from voldetail.field.shell_plan import OverBudgetError
 from voldetail.field.tiled_surface import tiled_isosurface
 from voldetail.geometry.isosurface import isosurface
+from voldetail.geometry.primitives.primitive import primitive_of
 from voldetail.render.mesh_surface import VolumeSurface
 from voldetail.render.traced_medium import TracedVolume
 from voldetail.render.volume import MEDIUM_PIXELS, SOLID_PIXELS, Volume, medium_of, thinnest_edge
@@ -100,7 +102,7 @@ def solid_surface(
         surface = tiled_isosurface(texture, on_progress=on_progress, budget=BUDGET)
     else:
         surface = isosurface(texture.bake(), texture.level, texture.outward_at, budget=BUDGET)
-    one_sided = volume.proxy.kind == "plane"
+    one_sided = primitive_of(volume.proxy).slab
     return VolumeSurface(texture, surface, volume.view, one_sided_sky=one_sided, bsdf=bsdf, emitters=emitters)
 
 
@@ -120,7 +122,7 @@ def traced_medium(
         albedo = tinted_albedo(detail.medium.albedo, detail.medium.asymmetry, reflectance.tint)
         return TracedVolume(grid, medium, volume.view, None, albedo=albedo, emitters=emitters)
     assert lamp is not None
-    beam = Lamp(lamp.direction, lamp.position, lamp.strength * reflectance.diffuse, lamp.at_camera)
+    beam = lamp.scaled(reflectance.diffuse)
     return TracedVolume(
         grid, medium, volume.view, beam, sky=reflectance.ambient, albedo=detail.medium.albedo, tint=reflectance.tint
     )

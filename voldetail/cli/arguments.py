@@ -7,9 +7,9 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from voldetail.detail.parameters import nearest
 from voldetail.errors import InputError
 from voldetail.files import readable
+from voldetail.records.nearest import nearest
 from voldetail.records.refusal import shown
 
 MOST_ANGLES = 360  # a picture a degree; more is a slip of the pen

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from rich.table import Table
 
 from voldetail.cli.console import output
-from voldetail.cli.photo_argument import photo_path
 from voldetail.errors import InputError
 
 if TYPE_CHECKING:
@@ -52,10 +51,9 @@ def compare(
     Pictures need not have the same size, but a texture has to have the same scale in both, in pixels. As a
     yardstick, the left half of A is compared with its right half.
     """
-    from voldetail.metric import METRICS, describe, distance_by_level
+    from voldetail.metric import describe, distance_by_level, metric_named
 
-    if metric not in METRICS:
-        raise InputError(f"There is no metric {metric!r}; use one of {', '.join(METRICS)}.")
+    metric = metric_named(metric)
     a, b = (_read(name, mask, resolution) for name in (first, second))
     if mask is not None and a.light.shape != b.light.shape:
         raise InputError(f"With --mask, {first} and {second} have to have the same size.")
@@ -73,12 +71,10 @@ def compare(
 
 
 def _read(name: str, mask: Path | None, resolution: int | None) -> _Picture:
-    from voldetail.image import load_mask, load_photo, luminance, resize, resize_mask
+    from voldetail.image import load_masked, luminance, resize, resize_mask
 
-    photo = load_photo(photo_path(name))
-    used = load_mask(mask, photo.pixels.shape[:2]) if mask is not None else None
-    if photo.opaque is not None:
-        used = photo.opaque if used is None else used & photo.opaque
+    photo = load_masked(name, mask)
+    used = photo.opaque
     light = luminance(photo.pixels)
     rows, columns = light.shape
     if resolution is not None and resolution < max(rows, columns):

@@ -11,9 +11,10 @@ import typer
 from voldetail.cli.console import output, remarks
 from voldetail.cli.fit_folder import DETAIL, FIT, FitFolder
 from voldetail.cli.threads import use_threads
+from voldetail.setup.shapes import SHAPE_WORDS
 
 if TYPE_CHECKING:
-    from voldetail.fit.fitter import FitResult
+    from voldetail.results import FitResult
 
 _Text = str | None
 LIGHT_HELP = (
@@ -33,7 +34,7 @@ def fit(
     proxy: Annotated[
         _Text,
         typer.Option(
-            help="The shape in the photo: plane, sphere, ellipsoid, box, cylinder or a mesh file.",
+            help=f"The shape in the photo: {SHAPE_WORDS} or a mesh file.",
             rich_help_panel=SCENE,
         ),
     ] = None,
@@ -161,10 +162,8 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
     from voldetail.fit.evenness import warning
     from voldetail.fit.fitter import fit as search
     from voldetail.fit.session import Progress, State
-    from voldetail.fit.target import Target, load_photo_of
-    from voldetail.fit.warmstart import starts_from
-    from voldetail.fit.warmstart.start import Start
-    from voldetail.setup.setup import Setup
+    from voldetail.fit.target import load_photo_of
+    from voldetail.results import Target
 
     console = remarks()
     picture = load_photo_of(place.setup)
@@ -185,12 +184,6 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
             if uneven:
                 console.print(uneven, markup=False, soft_wrap=True)
 
-        def starts_for(setup: Setup, target: Target) -> tuple[Start, ...]:
-            tell = teller(view, [], "reliefs for lights at this elevation, made once: ")
-            return starts_from(
-                setup, target, on_progress=tell, on_remark=lambda said: console.print(said, markup=False, soft_wrap=True)
-            )
-
         def on_progress(progress: Progress) -> None:
             place.begin(keep=start is not None)
             place.preview(progress)
@@ -202,7 +195,8 @@ def run(place: FitFolder, *, resume: bool, threads: int) -> None:
 
         result = search(
             place.setup, photo=picture, start=start, light_guess=guess, on_progress=on_progress, on_state=on_state,
-            on_target=on_target, starts_for=starts_for,
+            on_target=on_target, on_remark=lambda sentence: console.print(sentence, markup=False, soft_wrap=True),
+            on_library_progress=teller(view, [], "reliefs for lights at this elevation, made once: "),
         )
         place.begin(keep=start is not None)  # a resumed fit that was complete reports no progress
         place.finish(result)
@@ -235,8 +229,8 @@ def _tell(folder: Path, result: FitResult) -> None:
     # On a terminal a sentence is wrapped between words; in a file it stays one line.
     wrap = not console.is_terminal
     console.print(verdict(result.distance, result.detail.noise_floor).sentence, markup=False, soft_wrap=wrap)
-    told = f"Of the medium: {medium_words(result)}" if result.told else f"Amplitude {amplitude_words(result)}"
-    console.print(f"{told}.", markup=False, soft_wrap=wrap)
+    relief = f"Of the medium: {medium_words(result)}" if result.identifiability else f"Amplitude {amplitude_words(result)}"
+    console.print(f"{relief}.", markup=False, soft_wrap=wrap)
     spent = f"{result.evaluations} pictures compared in {duration(result.seconds)}"
     console.print(f"{spent}; {result.status}.", markup=False, soft_wrap=wrap)
     for name, what in (

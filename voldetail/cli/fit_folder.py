@@ -16,8 +16,8 @@ from voldetail.setup.file import setup_to_toml
 from voldetail.setup.setup import Setup
 
 if TYPE_CHECKING:
-    from voldetail.fit.fitter import FitResult
     from voldetail.fit.session import Progress, State
+    from voldetail.results import FitResult
 
 DETAIL, SETUP, STATE, PREVIEW, FIT = "detail.json", "setup.toml", "state.json", "preview.png", "fit.png"
 RESULTS = (DETAIL, FIT, "report.html", "sheet.png")

@@ -5,16 +5,17 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 from voldetail.cli.arguments import numbers, whole_numbers
-from voldetail.detail.parameters import nearest
 from voldetail.errors import InputError
 from voldetail.geometry.mesh_files import SUFFIXES
+from voldetail.records.nearest import nearest
 from voldetail.records.refusal import printable, shown
 from voldetail.setup.file import load_setup, setup_from_text
 from voldetail.setup.light import FORMS
-from voldetail.setup.setup import ProxySetup, Setup
+from voldetail.setup.setup import Setup
+from voldetail.setup.shapes import SIMPLE_KINDS
 
 OUTPUT_ROOT = Path("voldetail-out")
 
@@ -80,12 +81,11 @@ def _overrides(option: str, value: Any, options: Mapping[str, Any]) -> list[str]
 
 
 def _proxy(value: str) -> list[str]:
-    kinds = [k for k in get_args(ProxySetup.model_fields["kind"].annotation) if k != "mesh"]
-    if value in kinds:
+    if value in SIMPLE_KINDS:
         return [f'proxy.kind="{value}"', "proxy.mesh="]  # a scene may have named a mesh
     if not Path(value).suffix:
         raise InputError(
-            f"--proxy {shown(value)} is not known; {nearest(value, kinds)} (or give a mesh file: "
+            f"--proxy {shown(value)} is not known; {nearest(value, list(SIMPLE_KINDS))} (or give a mesh file: "
             f"{', '.join(SUFFIXES)})."
         )
     return ['proxy.kind="mesh"', f"proxy.mesh={json.dumps(value, ensure_ascii=False)}"]

@@ -11,8 +11,8 @@ import typer
 from voldetail.cli.building import teller
 from voldetail.cli.console import output, remarks
 from voldetail.cli.library_info import info, size_on_disk
-from voldetail.detail.parameters import nearest
 from voldetail.errors import InputError
+from voldetail.records.nearest import nearest
 
 if TYPE_CHECKING:
     from voldetail.library.building.build import BuildProgress

@@ -14,15 +14,13 @@ from voldetail.cli.shape_options import MESH_HELP, DetailFile, Rotation, Scale, 
 from voldetail.cli.threads import use_threads
 from voldetail.detail import load_detail
 from voldetail.errors import InputError
-from voldetail.files import readable
+from voldetail.setup.lights.table import FORMS_PLACED
 
 if TYPE_CHECKING:
     from voldetail.detail import Detail
     from voldetail.setup.setup import CameraSetup
 
-RENDER_LIGHTS = "AZ,EL in degrees, x,y,z or point:x,y,z"
-ENVIRONMENT_BYTES = 2**30
-ENVIRONMENT_SUFFIXES = (".exr", ".hdr")
+RENDER_LIGHTS = FORMS_PLACED
 ANIMATION_SECONDS = 0.12  # a frame
 MOST_FRAMES = 720
 BRIGHTEST = 1e3
@@ -67,6 +65,7 @@ def render(
     """Render a detail on a shape, under a light or an environment map."""
     from voldetail.apply import render as picture_of
     from voldetail.image import check_suffix, save_image
+    from voldetail.render.environment import checked_environment
     from voldetail.setup.light import parse_light
 
     check_suffix(out)
@@ -77,11 +76,11 @@ def render(
     if shading not in ("phong", "principled"):
         raise InputError(f"--shading {shading!r} is not known; use phong or principled.")
     lit = parse_light(light) if light is not None else None
-    if lit is not None and lit.kind == "auto":
+    if lit is not None and lit.row.estimated:
         raise InputError(f"--light auto is estimated from a photo, by fit alone: give it as {RENDER_LIGHTS}.")
     options: dict[str, Any] = {
         "light": lit,
-        "envmap": _environment(envmap) if envmap is not None else None,
+        "envmap": checked_environment(envmap) if envmap is not None else None,
         "scale": scale, "size": size(pixels), "camera": _camera(fov), "rotation": rotation_of(rotation),
         "subsamples": subsamples, "samples": samples, "shading": shading, "background": _background(background, record),
     }  # fmt: skip
@@ -209,10 +208,3 @@ def _background(text: str, record: Detail) -> tuple[float, float, float]:
     if not all(0 <= v <= BRIGHTEST for v in values):
         raise InputError(f"--background {text} is out of range; each number has to be 0 to {BRIGHTEST:g}.")
     return values[0], values[-2 if len(values) > 1 else 0], values[-1]
-
-
-def _environment(path: Path) -> Path:
-    readable(path, "environment map", ENVIRONMENT_BYTES)
-    if path.suffix.lower() not in ENVIRONMENT_SUFFIXES:
-        raise InputError(f"The environment map {path} is not a .exr or .hdr file; convert it to OpenEXR.")
-    return path

@@ -13,13 +13,12 @@ from rich.table import Table
 from voldetail.cli.arguments import whole_numbers
 from voldetail.cli.console import output, remarks
 from voldetail.cli.outputs import check_file
-from voldetail.cli.photo_argument import photo_path
 from voldetail.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from voldetail.library import Answer, Familiarity, Query, Ranking
+    from voldetail.library import Answer, Novelty, Query, Ranking
     from voldetail.library.groups import Groups
     from voldetail.library.index import Index
 
@@ -61,7 +60,7 @@ def retrieve(
     Nothing is optimised: the photo's descriptor is compared with those of a library. A structure is of the same size as the
     photo's only where the photo is compared at a size that the library knows; see --scale.
     """
-    from voldetail.library import familiarity, rank
+    from voldetail.library import novelty_of, rank
 
     for path, suffix in ((sheet, ".png"), (as_json, ".json"), (texture, ".json")):
         if path is not None:
@@ -76,18 +75,19 @@ def retrieve(
     )  # fmt: skip
     first = found.answers[0]
     with remarks().status(f"comparing with other pictures of {first.model}"):
-        familiar = familiarity(groups[first.model], first, rotations=rotation, swap=swap)
-    said = _remarks(asked, familiar)
+        novelty = novelty_of(groups[first.model], first, rotations=rotation, swap=swap)
+    said = _remarks(asked, novelty)
     _print(found, asked, said)
     if as_json is not None:
         from voldetail.files import write_text
 
-        write_text(as_json, json.dumps(_record(photo, asked, found, familiar, said), indent=2) + "\n")
+        write_text(as_json, json.dumps(_record(photo, asked, found, novelty, said), indent=2) + "\n")
     if texture is not None:
         from voldetail.detail.texture_file import save_texture
+        from voldetail.image.examples import picture_path
         from voldetail.library import texture_of
 
-        name = photo_path(photo)
+        name = picture_path(photo)
         save_texture(texture, texture_of(found.answers[0], (asked.photo.shape[0], asked.photo.shape[1]), name.name))
     if sheet is not None:
         _write_sheet(sheet, photo, asked, found.answers)
@@ -124,7 +124,7 @@ def _indexes(library: Path | None) -> dict[str, Index]:
 
 def _chosen(groups: Groups, names: list[str] | None) -> Groups:
     """The groups that are named; all where none is."""
-    from voldetail.detail.parameters import nearest
+    from voldetail.records.nearest import nearest
 
     names = [name.replace("-", " ") for name in names or []]  # as library build takes the name "cellular grid"
     for name in names:
@@ -134,19 +134,15 @@ def _chosen(groups: Groups, names: list[str] | None) -> Groups:
 
 
 def _query(photo: str, mask: Path | None, zone: str | None, scale: float | None) -> Query:
-    from voldetail.image import load_mask, load_photo
+    from voldetail.image import load_masked
     from voldetail.library import query
 
-    loaded = load_photo(photo_path(photo))
-    used = loaded.opaque
-    if mask is not None:
-        white = load_mask(mask, (loaded.pixels.shape[0], loaded.pixels.shape[1]))
-        used = white if used is None else white & used
+    loaded = load_masked(photo, mask)
     part = None
     if zone is not None:
         x, y, width, height = whole_numbers(zone, 4, "--zone", "X,Y,WIDTH,HEIGHT in pixels")
         part = (x, y, width, height)
-    return query(loaded.pixels, used, zone=part, scale=scale)
+    return query(loaded.pixels, loaded.opaque, zone=part, scale=scale)
 
 
 def _print(found: Ranking, asked: Query, said: list[str]) -> None:
@@ -165,9 +161,9 @@ def _print(found: Ranking, asked: Query, said: list[str]) -> None:
         remarks().print(sentence, markup=False, soft_wrap=True)
 
 
-def _remarks(asked: Query, familiar: Familiarity | None) -> list[str]:
+def _remarks(asked: Query, novelty: Novelty | None) -> list[str]:
     """What a reader of the answers has to know, a sentence each."""
-    said = [familiar.sentence if familiar else "", asked.tones.poor]
+    said = [novelty.sentence if novelty else "", asked.tones.poor]
     if asked.missing:
         said.append(
             f"The photo is too small for the coarsest {asked.missing} of six scales, so nothing of that size was compared."
@@ -188,15 +184,15 @@ def _table(rows: Sequence[tuple[str, Answer]], heading: str) -> Table:
 
 
 def _record(
-    photo: str, asked: Query, found: Ranking, familiar: Familiarity | None, said: list[str]
+    photo: str, asked: Query, found: Ranking, novelty: Novelty | None, said: list[str]
 ) -> dict[str, Any]:
     """The answers as what JSON holds."""
     rows, columns = asked.photo.shape[:2]
     return {
         "photo": photo, "pixels": [columns, rows], "scale": asked.scale, "explained": asked.tones.explained,
         "dark": asked.tones.dark.tolist(), "bright": asked.tones.bright.tolist(), "scales_missing": asked.missing,
-        "known": None if familiar is None else familiar.known,
-        "farthest_of_its_model": None if familiar is None else familiar.farthest,
+        "known": None if novelty is None else not novelty.novel,
+        "farthest_of_its_model": None if novelty is None else novelty.farthest,
         "remarks": said,
         "answers": [_answer(answer) for answer in found.answers],
         "best_of_each": {name: _answer(answers[0]) for name, answers in found.by_model.items()},

@@ -9,9 +9,10 @@ import typer
 
 from voldetail.cli.arguments import mesh, numbers
 from voldetail.cli.console import remarks
+from voldetail.setup.shapes import SHAPE_WORDS, SIMPLE_KINDS
 
 DETAIL_HELP = "A detail file, as fit makes it."
-MESH_HELP = "plane, sphere, ellipsoid, box, cylinder, or a mesh or density (.vol) file."
+MESH_HELP = f"{SHAPE_WORDS}, or a mesh or density (.vol) file."
 
 DetailFile = Annotated[Path, typer.Argument(help=DETAIL_HELP)]
 Scale = Annotated[float, typer.Option(min=1e-3, max=1e3, help="How many times larger the relief is than in the photo.")]
@@ -28,10 +29,9 @@ def rotation_of(text: str | None) -> tuple[float, float, float]:
 
 def shape_of(text: str) -> str:
     """Return ``text`` if it is a kind of proxy or a file that can be opened."""
-    from voldetail.apply import KINDS
     from voldetail.geometry.mesh_files import SUFFIXES
 
-    return mesh(text, KINDS, SUFFIXES)
+    return mesh(text, SIMPLE_KINDS, SUFFIXES)
 
 
 def tell(sentence: str) -> None:

@@ -11,7 +11,6 @@ from rich.table import Table
 
 from voldetail.cli.console import output, remarks
 from voldetail.cli.outputs import check_file
-from voldetail.cli.photo_argument import photo_path
 from voldetail.cli.threads import use_threads
 from voldetail.errors import InputError
 
@@ -146,17 +145,10 @@ def _pair(text: str, option: str) -> tuple[Path, Path]:
 
 def _read(photo: str, mask: Path | None) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     """The photo (H, W, 3), linear, and what of it may be used (H, W)."""
-    import numpy as np
+    from voldetail.image import load_masked, used_of
 
-    from voldetail.image import load_mask, load_photo
-
-    found = load_photo(photo_path(photo))
-    use = np.ones(found.pixels.shape[:2], bool) if mask is None else load_mask(mask, found.pixels.shape[:2])
-    if found.opaque is not None:
-        use = use & found.opaque
-    if not use.any():
-        raise InputError(f"All that the mask {mask} leaves of {photo} is transparent; paint other parts white.")
-    return found.pixels, use
+    loaded = load_masked(photo, mask)
+    return loaded.pixels, used_of(loaded)
 
 
 def _read_map(path: Path, shape: tuple[int, ...], normals: bool) -> NDArray[np.float32]:

@@ -10,7 +10,6 @@ import typer
 from voldetail.cli.arguments import numbers, size, whole_numbers
 from voldetail.cli.console import output, remarks
 from voldetail.cli.outputs import check_file, check_folder, make_folder, remove
-from voldetail.cli.photo_argument import photo_path
 from voldetail.cli.shape_options import MESH_HELP, shape_of
 from voldetail.cli.threads import use_threads
 from voldetail.detail.texture_file import load_example, load_texture, save_texture
@@ -50,16 +49,13 @@ def fit(
     seed: _Seed = None,
 ) -> None:
     """Analyse a photo: about seventy numbers that make the texture."""
-    from voldetail.image import load_mask, load_photo
+    from voldetail.image import load_masked
+    from voldetail.image.examples import picture_path
     from voldetail.texture import analyse
 
     check_file(out)
-    path = photo_path(photo)
-    loaded = load_photo(path)
-    pixels, used = loaded.pixels, loaded.opaque
-    if mask is not None:
-        white = load_mask(mask, (pixels.shape[0], pixels.shape[1]))
-        used = white if used is None else white & used
+    loaded = load_masked(photo, mask)
+    path, pixels, used = picture_path(photo), loaded.pixels, loaded.opaque
     if zone is not None:
         x, y, width, height = _zone(zone, pixels.shape[1], pixels.shape[0])
         pixels = pixels[y : y + height, x : x + width]

@@ -2,24 +2,23 @@
 
 from voldetail.detail.colour import ColourChannel, ColourTexture, Lobe
 from voldetail.detail.curves import MONOTONE_CURVES, START_CURVES
+from voldetail.detail.declaration import Parameter
 from voldetail.detail.detail_colour import DetailColour
 from voldetail.detail.file import detail_from_text, detail_to_text, load_detail, rounded, save_detail, schema
-from voldetail.detail.parameters import PARAMETERS, Parameter, bounds, help_text, parameter
-from voldetail.detail.record import (
+from voldetail.detail.parameters import (
     ALLOWED_NEIGHBOURS,
-    LARGEST_SEED,
     PAPER_NEIGHBOURS,
-    Detail,
+    PARAMETERS,
     MediumParameters,
-    NoiseFloor,
     NoiseParameters,
-    Provenance,
     Reflectance,
     ReliefParameters,
-    detail_from,
-    values_of,
-    with_values,
+    bounds,
+    parameter,
+    parameters_of,
 )
+from voldetail.detail.provenance import NoiseFloor, Provenance
+from voldetail.detail.record import LARGEST_SEED, Detail, detail_from, values_of, with_values
 from voldetail.detail.structure_texture import StructureTexture, Texture
 from voldetail.detail.words import describe_in_words, summary
 
@@ -49,9 +48,9 @@ __all__ = [
     "detail_from",
     "detail_from_text",
     "detail_to_text",
-    "help_text",
     "load_detail",
     "parameter",
+    "parameters_of",
     "rounded",
     "save_detail",
     "schema",

@@ -8,15 +8,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from voldetail.detail.parameters import PARAMETERS, parameter
-from voldetail.detail.record import (
-    DETAIL_VERSION,
-    Detail,
-    MediumParameters,
-    NoiseParameters,
-    Reflectance,
-    ReliefParameters,
-)
+from voldetail.detail.parameters import GROUPS, PARAMETERS, parameter
+from voldetail.detail.record import DETAIL_VERSION, Detail
 from voldetail.errors import InputError
 from voldetail.files import write_text
 from voldetail.records.json_text import Migration, json_text, migrated, of_format, parsed
@@ -24,7 +17,6 @@ from voldetail.records.reading import read_small_text
 from voldetail.records.refusal import printable, refusal
 
 FORMAT = "voldetail.detail"
-_GROUPS = tuple(dict.fromkeys(p.key.split(".")[0] for p in PARAMETERS))
 _OPTIONAL = "medium"
 """The group that a detail may be without."""
 
@@ -85,12 +77,12 @@ def detail_from_text(text: str, where: str = "The detail") -> Detail:
 
 def _refuse_missing(data: dict[str, Any], where: str) -> None:
     """Refuse a file that leaves a parameter out, unless it is a later one: the record's defaults are for Python callers."""
-    for group in _GROUPS:
+    for group in GROUPS:
         if group == _OPTIONAL and data.get(group) is None:
             continue
         names = [p.key.split(".")[1] for p in PARAMETERS if p.key.startswith(group + ".")]
         if group not in data:
-            raise InputError(f"{where}: {group} is missing; a detail file has {', '.join(g for g in _GROUPS if g != _OPTIONAL)}.")
+            raise InputError(f"{where}: {group} is missing; a detail file has {', '.join(g for g in GROUPS if g != _OPTIONAL)}.")
         given = data[group]
         if not isinstance(given, dict) or set(given) - set(names):
             continue  # of the wrong kind, or with a misspelt key: the record's own refusal tells more
@@ -102,16 +94,13 @@ def _refuse_missing(data: dict[str, Any], where: str) -> None:
 
 def schema() -> dict[str, Any]:
     """The JSON schema of the detail file, with a sentence and a unit for each parameter."""
-    made = Detail.model_json_schema(mode="serialization")
+    text = Detail.model_json_schema(mode="serialization")
     form = {"const": FORMAT, "type": "string", "description": "Tells that this is a detail file."}
-    made["properties"] = {"format": form, **made["properties"]}
-    made["required"] = ["format", "version", *(g for g in _GROUPS if g != _OPTIONAL)]
+    text["properties"] = {"format": form, **text["properties"]}
+    text["required"] = ["format", "version", *(g for g in GROUPS if g != _OPTIONAL)]
     later = {p.key for p in PARAMETERS if p.later}
-    groups = (
-        ("noise", NoiseParameters), ("relief", ReliefParameters), ("reflectance", Reflectance), ("medium", MediumParameters),
-    )
-    for group, record in groups:
+    for group, record in GROUPS.items():
         # Defaults are for Python, not for files.
         names = [name for name in record.model_fields if f"{group}.{name}" not in later]
-        made["$defs"][record.__name__]["required"] = names
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **made}
+        text["$defs"][record.__name__]["required"] = names
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **text}

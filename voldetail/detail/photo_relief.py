@@ -50,7 +50,7 @@ class PhotoRelief(Record):
     texels_per_unit: float = Field(gt=0, le=1e6, description="Pixels a scene unit; the photo's longest side is 2 units.")
     periodic: bool = Field(default=False, description="Whether opposite edges meet: a tile.")
     relief: ReliefParameters = Field(description="The height of the highest point above the lowest, in scene units.")
-    reflectance: Reflectance = Field(description="Ka, Kd, Ks and N; the albedo map goes on Ka and Kd, divided by its mean luminance.")
+    reflectance: Reflectance = Field(description="Ka, Kd, Ks and N; on Ka and Kd goes the albedo map over its mean luminance.")
     light: str = Field(min_length=1, max_length=200, description="The light of the photo, as on the command line.")
     confidence: float = Field(ge=0, le=1, description="How sure the relief is, 0 to 1, in the mean.")
     notes: tuple[str, ...] = Field(default=(), max_length=50, description="What was seen on the way, in sentences.")
@@ -63,7 +63,7 @@ class PhotoRelief(Record):
         used = [name for name in ("height_albedo", "cell_albedo", "speckle") if getattr(r, name) != 0.0]
         if used:
             raise ValueError(f"a relief of maps has its pattern of albedo in them: set reflectance.{used[0]} to 0")
-        if not 0 < self.relief.amplitude:
+        if self.relief.amplitude == 0:
             raise ValueError("relief.amplitude has to be over 0; a flat photo has no relief to keep")
         return self
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from voldetail.detail.parameters import PARAMETERS, Parameter
+from voldetail.detail.declaration import Parameter
+from voldetail.detail.parameters import PARAMETERS, parameters_of
 from voldetail.detail.record import Detail, values_of
 
 _GLOSSY = (
     0.05  # Ks above which a highlight is worth mentioning: 5 % of the beam, about a dielectric's reflectance
 )
 _ANGULAR = 0.5  # facets above which the flat faces are what one sees
-MEDIUM_HAS_NONE = ("specular", "shininess", "height_albedo", "cell_albedo", "speckle", "speckle_scale")
+MEDIUM_HAS_NONE = ("specular", "shininess", *(p.name for p in parameters_of("pigment")))
 """Numbers of the reflectance that a medium has no use for."""
 
 _COLOURED = {
@@ -29,8 +30,8 @@ def describe_in_words(detail: Detail) -> list[tuple[str, str, str, str]]:
     """
     values = values_of(detail)
     unused = MEDIUM_HAS_NONE if detail.medium is not None else ()
-    shown = [p for p in PARAMETERS if p.key in values and p.key.removeprefix("reflectance.") not in unused]
-    return [(p.label, *_value(p, values[p.key]), p.sentence) for p in shown]
+    seen = [p for p in PARAMETERS if p.key in values and p.key.removeprefix("reflectance.") not in unused]
+    return [(p.label, *_value(p, values[p.key]), p.sentence) for p in seen]
 
 
 def summary(detail: Detail) -> str:

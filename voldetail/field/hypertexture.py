@@ -3,8 +3,8 @@
 Symbols
     P'      P + A_d R(P) G(P), the shifted point, at which the density is looked up
     A_d     amplitude, scene units      R(P)    relief function in [0, 1] (eq. 3), at P in the object's own frame
-    G       the normalised gradient of the object's density, G = -n with n the outward normal (scene.shell)
-    s, d    signed distance, and the object's density, a function of s alone (scene.shell)
+    G       the normalised gradient of the object's density, G = -n with n the outward normal (field.shell)
+    s, d    signed distance, and the object's density, a function of s alone (field.shell)
     d_h     exponent of the transfer function th = d(P')^d_h
 
 Choices:

@@ -69,8 +69,8 @@ class MapField:
             for word, share in zip(words, shares, strict=True):
                 dx, dy = offset_from(word, column, row, edge)
                 a, b = hashed_place(word, plane, self.seed)
-                values = self._between(self.channels, self._place(a, self.columns, edge) + dx, self._place(b, self.rows, edge) + dy,
-                                       mirror=not self.periodic, active=seen)  # fmt: skip
+                at = self._place(a, self.columns, edge) + dx, self._place(b, self.rows, edge) + dy
+                values = self._between(self.channels, *at, mirror=not self.periodic, active=seen)
                 both = weight * share
                 total = [dr.fma(both, value, sum_) for value, sum_ in zip(values, total, strict=True)]
                 squares = dr.fma(both, both, squares)
@@ -108,7 +108,8 @@ class MapField:
         """Return height and colour of Gaussian scores: each channel's quantiles, then the colour's axes."""
         found = []
         for channel, score in enumerate(scores):
-            along = dr.clip((score + self.scores.farthest) * ((QUANTILES - 1) / (2.0 * self.scores.farthest)), 0.0, QUANTILES - 1.0)
+            place = (score + self.scores.farthest) * ((QUANTILES - 1) / (2.0 * self.scores.farthest))
+            along = dr.clip(place, 0.0, QUANTILES - 1.0)
             index = dr.minimum(self.uint_type(along), QUANTILES - 2)
             low, high = (dr.gather(self.float_type, self.quantiles, index + (channel * QUANTILES + k)) for k in (0, 1))
             found.append(dr.lerp(low, high, along - self.float_type(index)))

@@ -13,7 +13,16 @@ from voldetail.detail import Detail
 from voldetail.detail.photo_relief import MappedDetail
 from voldetail.field.albedo import coloured
 from voldetail.field.mapped import mapped_relief_and_albedo
-from voldetail.noise import GrainShape, NoiseSettings, PlateShape, cell_value, number_of, relief_function, specks
+from voldetail.noise import (
+    OCTAVE_NUMBERS,
+    NoiseSettings,
+    PlateShape,
+    StoneShape,
+    cell_value,
+    number_of,
+    relief_function,
+    specks,
+)
 
 SOLID = "solid"
 QUANTILE_POINTS = 64
@@ -51,7 +60,7 @@ def relief_and_albedo(
     detail: Detail | MappedDetail, domain: tuple[Any, ...], scale: float = 1.0, *, spacing: float = 0.0,
     normals: tuple[Any, ...] | None = None,
 ) -> tuple[Any, Any | None]:
-    """Return `relief_at` and the factor on the albedo (scene.pigment): None for 1, an array, or three for colour.
+    """Return `relief_at` and the factor on the albedo (field.albedo): None for 1, an array, or three for colour.
 
     ``spacing`` of the points in scene units, between which colour is averaged; ``normals`` of the bare shape in the domain.
     """
@@ -80,18 +89,15 @@ def relief_and_albedo(
 
 
 def _relief(detail: Detail, domain: tuple[Any, ...], scale: float) -> tuple[Any, Any | None]:
-    """Return the relief and, where the highest counts, the grain on top."""
+    """Return the relief and, where the highest counts, the stone on top."""
     float_type: Any = type(domain[0])
     noise = detail.noise
     shape = plates = None
     if noise.joining == "highest":
-        shape = GrainShape(*_opaque(float_type, b=noise.facets, e=noise.elongation, s=noise.size_spread).values())
+        shape = StoneShape.of(noise, lambda value: _opaque(float_type, value))
     if noise.has_plates:
-        plates = PlateShape(*_opaque(float_type, o=noise.cell_height, t=noise.cell_tilt, w=noise.bevel).values())
-    octaves = _opaque(
-        float_type, lacunarity=noise.lacunarity, gain=noise.gain, stripe_frequency=noise.stripe_frequency,
-        stripe_spread=noise.stripe_spread,
-    )
+        plates = PlateShape.of(noise, lambda value: _opaque(float_type, value))
+    octaves = {name: _opaque(float_type, getattr(noise, name)) for name in OCTAVE_NUMBERS}
     return relief_function(
         _points(detail, domain), settings_of(detail), _seed(detail, float_type), **_cells(detail, float_type, scale),
         **octaves, curve=float_type(list(noise.curve)), shape=shape, plates=plates,
@@ -108,9 +114,10 @@ def _seed(detail: Detail, float_type: Any) -> Any:
 
 def _cells(detail: Detail, float_type: Any, scale: float) -> dict[str, Any]:
     noise = detail.noise
-    return _opaque(float_type, scale=noise.scale / scale, anisotropy=noise.anisotropy, angle=noise.angle)
+    numbers = {"scale": noise.scale / scale, "anisotropy": noise.anisotropy, "angle": noise.angle}
+    return {name: _opaque(float_type, value) for name, value in numbers.items()}
 
 
-def _opaque(float_type: Any, **numbers: float) -> dict[str, Any]:
+def _opaque(float_type: Any, value: float) -> Any:
     # These numbers change at every evaluation of a fit and must not become code.
-    return {name: dr.opaque(float_type, float(value)) for name, value in numbers.items()}
+    return dr.opaque(float_type, float(value))

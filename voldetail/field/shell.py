@@ -25,11 +25,11 @@ from numpy.typing import NDArray
 
 from voldetail.backend import mitsuba
 from voldetail.errors import InputError
-from voldetail.field.shell_blocks import simple_distance
-from voldetail.field.shell_plan import ShellPlan
+from voldetail.field.shell_grid import ShellPlan
 from voldetail.geometry import signed_distance
 from voldetail.geometry.density_grid import DensityGrid, split
 from voldetail.geometry.mesh_distance import mesh_distance
+from voldetail.geometry.primitives.primitive import primitive_of
 from voldetail.geometry.proxy import rotation_matrix
 
 TILE = 1 << 20
@@ -80,7 +80,7 @@ class Shell:
 
     def within(self, own: Points) -> Any:
         """Return where a point in the object's own frame belongs to it at all: a slab ends at its sides and its bottom."""
-        if self.plan.proxy.kind != "plane":
+        if not primitive_of(self.plan.proxy).slab:
             return True
         float_type: Any = type(own[0])
         w, h = (dr.opaque(float_type, v / 2) for v in self.plan.proxy.extent[:2])
@@ -141,8 +141,9 @@ def make_shell(plan: ShellPlan) -> Shell:
     """
     proxy = plan.proxy
     turn = rotation_matrix(proxy.rotation)
-    if proxy.kind != "mesh":
-        return Shell(plan, simple_distance(proxy), turn)
+    shape = primitive_of(proxy)
+    if shape.exact:
+        return Shell(plan, shape.distance(), turn)
     return Shell(plan, _nowhere if plan.blocks else _mesh(plan, turn), turn)
 
 

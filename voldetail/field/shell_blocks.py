@@ -9,22 +9,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.backend import mitsuba
-from voldetail.geometry import signed_distance
-from voldetail.geometry.mesh_distance import Grid, signed_distances, small_triangles, winding_numbers
+from voldetail.field.shell_grid import SIDE, ShellPlan, block_counts
+from voldetail.geometry.mesh_distance import signed_distances, small_triangles, winding_numbers
+from voldetail.geometry.primitives.primitive import primitive_of
 from voldetail.geometry.proxy import rotation_matrix
-from voldetail.setup.setup import ProxySetup
-
-if TYPE_CHECKING:
-    from voldetail.field.shell_plan import ShellPlan
-
-SIDE = 64
-"""Steps along a block's side; tuned on a sphere of 256 cells a side."""
 
 HALO = 2
 """Cubes more on each side of a block in which a mesh's distances are known: for the differences that give n."""
@@ -38,27 +31,11 @@ CHUNK = 1 << 20
 Reaches = Callable[[NDArray[np.int64]], NDArray[np.bool_]]
 
 
-def simple_distance(proxy: ProxySetup) -> signed_distance.Distance:
-    """Return the distance to a proxy that is not a mesh, in its own frame."""
-    half = (proxy.extent[0] / 2, proxy.extent[1] / 2, proxy.extent[2] / 2)
-    if proxy.kind == "plane":
-        return signed_distance.plane()
-    if proxy.kind in ("sphere", "ellipsoid"):
-        return signed_distance.ellipsoid(half)
-    return (signed_distance.box if proxy.kind == "box" else signed_distance.cylinder)(half)
-
-
 def mesh_in_cubes(plan: ShellPlan) -> NDArray[np.float64]:
     """Return the placed mesh's vertices (V, 3) in cubes from the first middle of the plan's grid."""
     assert plan.mesh is not None
     placed = plan.mesh.vertices @ rotation_matrix(plan.proxy.rotation).T + np.asarray(plan.proxy.position)
     return np.asarray((placed - np.asarray(plan.lower)) / plan.edge - 0.5)
-
-
-def block_counts(shape: Grid) -> Grid:
-    """Return how many blocks the grid has along z, y and x."""
-    nz, ny, nx = (-(-(count + 1) // SIDE) for count in shape)
-    return nz, ny, nx
 
 
 def near_blocks(plan: ShellPlan) -> NDArray[np.int64]:
@@ -83,7 +60,8 @@ def _half_diagonal(plan: ShellPlan) -> float:
 
 
 def _simple_reaches(plan: ShellPlan) -> Reaches:
-    distance, turn, radius = simple_distance(plan.proxy), rotation_matrix(plan.proxy.rotation), _half_diagonal(plan)
+    shape = primitive_of(plan.proxy)
+    distance, turn, radius = shape.distance(), rotation_matrix(plan.proxy.rotation), _half_diagonal(plan)
     mi = mitsuba()
 
     def reaches(first: NDArray[np.int64]) -> NDArray[np.bool_]:
@@ -92,7 +70,7 @@ def _simple_reaches(plan: ShellPlan) -> Reaches:
         s = distance(tuple(mi.Float(np.ascontiguousarray(own[:, axis])) for axis in range(3)))[0].numpy().astype(np.float64)
         full = s < -plan.thickness / 2 - radius  # all through, unless a slab ends in the block
         beside = np.zeros(len(first), dtype=bool)
-        if plan.proxy.kind == "plane":
+        if shape.slab:
             w, h = plan.proxy.extent[0] / 2, plan.proxy.extent[1] / 2
             over = np.maximum(np.maximum(np.abs(own[:, 0]) - w, np.abs(own[:, 1]) - h), -plan.depth - own[:, 2])
             full &= over < -radius

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from voldetail.errors import InputError
-from voldetail.field.shell_blocks import SIDE, block_counts, near_blocks
+from voldetail.field.shell_blocks import near_blocks
+from voldetail.field.shell_grid import SIDE, ShellPlan
 from voldetail.geometry import isosurface
-from voldetail.geometry.closed_mesh import closed_mesh
 from voldetail.geometry.meshes import Mesh
+from voldetail.geometry.primitives.primitive import primitive_of
 from voldetail.geometry.proxy import rotation_matrix
-from voldetail.geometry.topology import crosses
 from voldetail.setup.setup import ProxySetup
 
 DEFAULT_BUDGET = 1 << 30
@@ -57,52 +57,6 @@ class OverBudgetError(InputError):
     """A grid takes more memory than it may."""
 
 
-@dataclass(frozen=True, eq=False)
-class ShellPlan:
-    """The grid of a shell, and what it will take.
-
-    edge, thickness, amplitude in scene units; shape (nz, ny, nx) and lower as those of a DensityGrid; depth: how far a
-    plane's slab reaches down. byte_count: memory at the most. seconds: about how long density and noise take. mesh: the
-    checked mesh in its own frame, None for the simple shapes. blocks: how many blocks of SIDE cells a side the surface can
-    reach, where the grid as a whole is too large (then bytes and seconds are those of `tiled_isosurface`); 0 for a dense one.
-    """
-
-    proxy: ProxySetup
-    edge: float
-    thickness: float
-    amplitude: float
-    shape: tuple[int, int, int]
-    lower: tuple[float, float, float]
-    depth: float
-    byte_count: int
-    seconds: float
-    mesh: Mesh | None = None
-    blocks: int = 0
-
-    @property
-    def cells(self) -> int:
-        """How many cubes the grid has."""
-        return math.prod(self.shape)
-
-    @property
-    def sentence(self) -> str:
-        """The plan in words, for the user to read before it is carried out."""
-        nz, ny, nx = self.shape
-        tiles = f" in at most {self.blocks} of {math.prod(block_counts(self.shape))} blocks," if self.blocks else ""
-        return (
-            f"{nx} x {ny} x {nz} cells of {self.edge:.3g} scene units,{tiles} {self.byte_count / 2**20:.0f} MB,"
-            f" about {max(self.seconds, 1.0):.0f} s"
-        )
-
-    def check_dense(self) -> None:
-        """Refuse to fill the whole grid where it was planned for tiles."""
-        if self.blocks:
-            raise InputError(
-                f"A grid of {self.sentence.split(',')[0]} was planned for its surface by tiles alone: plan it without tiles to"
-                " fill it."
-            )
-
-
 def plan_shell(
     proxy: ProxySetup, edge: float, thickness: float, amplitude: float = 0.0, budget: int | None = None, tiles: bool = False,
     *, solid: bool = True,
@@ -128,7 +82,7 @@ def plan_shell(
             f"The shell is {thickness:g} scene units thick, less than {LEAST_CELLS} cells of {edge:g}: it would fall between"
             f" them; use a thickness of at least {LEAST_CELLS * edge:.3g} or an edge of at most {thickness / LEAST_CELLS:.3g}."
         )
-    mesh = closed_mesh(proxy) if proxy.kind == "mesh" else None
+    mesh = primitive_of(proxy).mesh()
     if solid:
         _check_inside(proxy, thickness)
     plan = _layout(proxy, mesh, edge, thickness, amplitude)
@@ -156,10 +110,11 @@ def plan_shell(
 
 def _check_inside(proxy: ProxySetup, thickness: float) -> None:
     """Refuse a shell that leaves nothing solid in a simple shape; for a mesh this is known once its distances are."""
-    if proxy.kind not in ("plane", "mesh") and thickness >= min(proxy.extent):
+    thinnest = primitive_of(proxy).thinnest()
+    if thinnest is not None and thickness >= thinnest:
         raise InputError(
             f"The shell is {thickness:g} scene units thick, as much as the {proxy.kind} itself at its thinnest"
-            f" ({min(proxy.extent):g}), so nothing of it would be solid: use a smaller thickness."
+            f" ({thinnest:g}), so nothing of it would be solid: use a smaller thickness."
         )
 
 
@@ -168,15 +123,9 @@ def _layout(
 ) -> ShellPlan:
     above = amplitude + thickness / 2 + edge
     depth = max(proxy.extent[2], thickness / 2 + SLAB_CELLS * edge)
-    if mesh is not None:
-        corners = mesh.vertices
-    else:
-        half = np.asarray(proxy.extent) / 2
-        # A plane's box holds its slab, and the room above it; the others leave room on all sides.
-        low, high = (np.array([*-half[:2], -depth]), np.array([*half[:2], above])) if proxy.kind == "plane" else (-half, half)
-        corners = np.array([[(low, high)[bit >> axis & 1][axis] for axis in range(3)] for bit in range(8)])
+    shape = primitive_of(proxy)
+    corners, margin = shape.hull(depth, above)
     placed = corners @ rotation_matrix(proxy.rotation).T + np.asarray(proxy.position)
-    margin = 0.0 if proxy.kind == "plane" else above
     low, high = placed.min(axis=0) - margin, placed.max(axis=0) + margin
     counts = np.maximum(np.ceil((high - low) / edge * (1 - 1e-6)), 1.0)
     # What rounding up added is shared by both sides: all middles of a plane that is not turned are within its slab.
@@ -184,7 +133,7 @@ def _layout(
     counts = np.minimum(counts, 1e9)  # an edge of 1e-300 is refused for its memory, not for an overflow
     cells = float(counts.prod())
     kind = "simple" if mesh is None else "mesh"
-    area = _area(proxy, mesh)
+    area = shape.area()
     band = min(area * (thickness + amplitude) / edge / edge / edge, cells)
     nx, ny, nz = (int(count) for count in counts)
     byte_count, seconds = cells * BYTES_A_CELL[kind], cells * SECONDS_A_CELL[kind]
@@ -201,24 +150,11 @@ def _layout(
     )
 
 
-def _area(proxy: ProxySetup, mesh: Mesh | None) -> float:
-    """Return the area of the proxy's surface in square scene units, or somewhat more."""
-    if mesh is not None:
-        return 0.5 * float(np.linalg.norm(crosses(mesh.vertices, mesh.faces), axis=1).sum())
-    w, h, d = proxy.extent
-    if proxy.kind == "plane":
-        return w * h
-    if proxy.kind == "cylinder":  # its rim at most that of the circle with the mean square radius
-        return math.pi * (w * d / 2 + h * math.sqrt((w * w + d * d) / 2))
-    if proxy.kind in ("sphere", "ellipsoid"):  # at most that of the sphere with the mean square of the pairs' products
-        return math.pi * math.sqrt(((w * h) ** 2 + (h * d) ** 2 + (d * w) ** 2) / 3)
-    return 2 * (w * h + h * d + d * w)
-
-
 def _vertices(plan: ShellPlan) -> float:
     """Return about how many vertices the surface will have, as long as its relief is no steeper than most."""
-    area = _area(plan.proxy, plan.mesh)
-    if plan.proxy.kind == "plane":  # its bottom and the sides where the box cuts it
+    shape = primitive_of(plan.proxy)
+    area = shape.area()
+    if shape.slab:  # its bottom and the sides where the box cuts it
         area = 2 * area + 2 * (plan.depth + plan.amplitude) * (plan.proxy.extent[0] + plan.proxy.extent[1])
     return area / plan.edge / plan.edge * VERTICES_A_SQUARE
 

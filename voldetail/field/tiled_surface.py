@@ -19,7 +19,8 @@ from voldetail.backend import mitsuba
 from voldetail.errors import InputError, VoldetailError
 from voldetail.field.hypertexture import Hypertexture
 from voldetail.field.shell import check_depth, on_block
-from voldetail.field.shell_blocks import HALO, SIDE, mesh_blocks, near_blocks
+from voldetail.field.shell_blocks import HALO, mesh_blocks, near_blocks
+from voldetail.field.shell_grid import SIDE
 from voldetail.field.shell_plan import BYTES_A_TILED_VERTEX, BYTES_AT_LEAST
 from voldetail.geometry import isosurface as whole
 from voldetail.geometry.isosurface import DEFAULT_BUDGET, LEAST_ISLAND, Isosurface

@@ -1,4 +1,4 @@
-"""Looks that nature repeats, as starting points: cheap to try, and rarely met by samples that only cover the space."""
+"""Reliefs that nature repeats, as starting points: cheap to try, and rarely met by samples that only cover the space."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ ARCHETYPES: tuple[tuple[str, Kind, dict[str, float]], ...] = (
                "stone_gain": 0.2, "reflectance.cell_albedo": 0.2, "reflectance.height_albedo": 0.2}),
     ("lumps", Kind(1, 50, "gaussian", 2, False, stones=True),
      {"noise.facets": 0.2, "noise.elongation": 1.5, "noise.size_spread": 0.6, "noise.lacunarity": 3.0, "stone_gain": 0.3}),
-    ("pebbles", Kind(1, 2, "gaussian", 1, False, grains=True, pigment=True),
+    ("pebbles", Kind(1, 2, "gaussian", 1, False, bordered=True, pigment=True),
      RISING | {"reflectance.cell_albedo": 0.25, "reflectance.height_albedo": 0.3}),
-    ("gravel", Kind(1, 2, "exponential", 2, True, grains=True, pigment=True),
+    ("gravel", Kind(1, 2, "exponential", 2, True, bordered=True, pigment=True),
      RISING | {"noise.stripe_frequency": 0.3, "noise.stripe_spread": math.pi, "noise.lacunarity": 3.0,
                "reflectance.cell_albedo": 0.25, "reflectance.height_albedo": 0.3}),
-    ("bare grains", Kind(1, 2, "gaussian", 2, False, grains=True), RISING | {"noise.lacunarity": 2.5}),
-    ("mud plates", Kind(1, 2, "gaussian", 2, False, grains=True, pigment=True, plates=True),
+    ("bare pebbles", Kind(1, 2, "gaussian", 2, False, bordered=True), RISING | {"noise.lacunarity": 2.5}),
+    ("mud plates", Kind(1, 2, "gaussian", 2, False, bordered=True, pigment=True, plates=True),
      RISING | {"noise.cell_height": 2.0, "noise.cell_tilt": 2.0, "noise.bevel": 0.1, "noise.lacunarity": 3.0,
                "plate_gain": 0.4, "reflectance.cell_albedo": 0.1, "plate_dust": 0.1}),
-    ("slate", Kind(1, 2, "gaussian", 2, False, grains=True, plates=True),
+    ("slate", Kind(1, 2, "gaussian", 2, False, bordered=True, plates=True),
      FALLING | {"noise.cell_height": 3.0, "noise.cell_tilt": 2.0, "noise.bevel": 0.06, "noise.lacunarity": 2.5,
                 "plate_gain": 0.4}),
-    ("bark plates", Kind(1, 2, "gaussian", 3, False, grains=True, pigment=True, plates=True),
+    ("bark plates", Kind(1, 2, "gaussian", 3, False, bordered=True, pigment=True, plates=True),
      {"noise.cell_height": 2.0, "noise.cell_tilt": 2.0, "noise.bevel": 0.25, "noise.lacunarity": 2.0, "plate_gain": 0.6,
       "plate_dust": 0.1}),
-    ("facets", Kind(1, 2, "gaussian", 2, False, grains=True, pigment=True, plates=True),
+    ("facets", Kind(1, 2, "gaussian", 2, False, bordered=True, pigment=True, plates=True),
      {"noise.cell_height": 1.0, "noise.cell_tilt": 4.0, "noise.bevel": 0.3, "noise.lacunarity": 2.5, "plate_gain": 0.3,
       "reflectance.cell_albedo": 0.25}),
     ("roughcast", Kind(1, 50, "gaussian", 2, False), FALLING | {"noise.lacunarity": 2.2}),
@@ -59,7 +59,7 @@ ARCHETYPES: tuple[tuple[str, Kind, dict[str, float]], ...] = (
      {"noise.stripe_frequency": 1.0, "noise.stripe_spread": math.pi, "noise.lacunarity": 2.0}),
     ("creases", Kind(1, 50, "gaussian", 3, False, fold="ridge"), {"noise.lacunarity": 2.0}),
 )
-"""Name, kind and numbers of each look; scale, roughness and stretch are varied over them."""
+"""Name, kind and numbers of each archetype; scale, roughness and stretch are varied over them."""
 
 CLOUDS: tuple[tuple[str, Kind, dict[str, float]], ...] = (
     ("cumulus", Kind(1, 50, "gaussian", 4, False),
@@ -85,13 +85,13 @@ ROUGHNESS = (0.25, 0.6)
 MEDIUM_ROUGHNESS = (0.7, 1.7)
 
 
-def looks_of(space: Space) -> tuple[tuple[str, Kind, dict[str, float]], ...]:
-    """Return the looks that can be searched in ``space``."""
+def archetypes_of(space: Space) -> tuple[tuple[str, Kind, dict[str, float]], ...]:
+    """Return the archetypes that can be searched in ``space``."""
     return CLOUDS if space.medium else ARCHETYPES
 
 
 def archetypes(space: Space, anisotropy: tuple[float, float]) -> list[Candidate]:
-    """Return every look at several scales and two roughnesses, stretched as the photo's spectrum is.
+    """Return every archetype at several scales and two roughnesses, stretched as the photo's spectrum is.
 
     Scales run evenly, on a logarithmic scale, over the middle of what the picture can show.
     """
@@ -99,7 +99,7 @@ def archetypes(space: Space, anisotropy: tuple[float, float]) -> list[Candidate]
     factor, angle = anisotropy
     out = []
     roughness = MEDIUM_ROUGHNESS if space.medium else ROUGHNESS
-    for (_, kind, numbers), step, rough in itertools.product(looks_of(space), range(SCALES), roughness):
+    for (_, kind, numbers), step, rough in itertools.product(archetypes_of(space), range(SCALES), roughness):
         if not space.pigmented:
             kind = replace(kind, pigment=False)
         scale = float(np.exp(low + (high - low) * (0.3 + 0.6 * step / (SCALES - 1))))

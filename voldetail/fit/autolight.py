@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from voldetail.errors import InputError
-from voldetail.fit.lightguess import FLOOR, LightGuess, guess_light
+from voldetail.fit.lightguess import FLOOR, guess_light
 from voldetail.fit.target import mask_of
 from voldetail.fit.zone import check_zone
 from voldetail.image import Photo, luminance
+from voldetail.results import LightGuess
 from voldetail.setup.light import FORMS_GIVEN, direction_of
 from voldetail.setup.setup import Light, Setup
 
@@ -18,9 +19,9 @@ def resolve_light(setup: Setup, photo: Photo) -> tuple[Setup, LightGuess | None]
     Raises InputError where the proxy is no plane facing the camera or the photo is of a medium, and where it does not show
     its light.
     """
-    if setup.light.kind != "auto":
+    if not setup.light.row.estimated:
         return setup, None
-    if setup.proxy.kind != "plane" or any(setup.proxy.rotation) or setup.medium:
+    if not setup.proxy.row.flat or any(setup.proxy.rotation) or setup.medium:
         other = "what is seen is a medium" if setup.medium else "the proxy is another"
         raise InputError(
             f"The light auto is for a plane that faces the camera, and {other}: give --light as {FORMS_GIVEN}."

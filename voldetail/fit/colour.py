@@ -8,7 +8,6 @@ may go with noise of its own ("by-example"), with the relief's height, one way o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +21,7 @@ from voldetail.image import to_linear, to_srgb
 from voldetail.metric import Descriptor, describe, distance
 from voldetail.render.unit_components import components
 from voldetail.render.volume import Volume
+from voldetail.results.colour import ColourChoice
 from voldetail.texture import CURVE_PROBABILITIES, analyse, picture
 
 DRIVERS: dict[str, tuple[str, ...]] = {
@@ -32,26 +32,16 @@ DRIVERS: dict[str, tuple[str, ...]] = {
 
 NAMES = {"noise": "by-example", "height": "height", "hollow": "height", "cell": "cell"}
 
-HANDICAPS = {"height": 1.06, "hollow": 1.06, "cell": 1.06}
+PENALTIES = {"height": 1.06, "hollow": 1.06, "cell": 1.06}
 """Factors on the distances by which a colour that goes with the relief has to pay for itself. Without them it won by a few
 percent on most photographs, and was further from those under other lights than colour by example was (tuned on two of the
-captures of ../shared/data/multilight)."""
+captures of one surface under several lights)."""
 
 GREY = 0.03
 """Share of the most varied channel's deviation below which another tells nothing: the noise of a compressed grey photo."""
 
 MEAN_SIDE = 256
 """Texels a side of the texture whose mean is divided by."""
-
-
-@dataclass(frozen=True)
-class ColourChoice:
-    """The colour of a detail: what was chosen, how far each try was from the photo, and the picture (H, W, 3)."""
-
-    detail: Detail
-    chosen: str
-    distances: dict[str, float]
-    picture: NDArray[np.float32]
 
 
 class ColourDistance:
@@ -112,17 +102,17 @@ def choose_colour(
     learnt = _learnt(objective, [e.picture for e in evaluations], seen, detail.seed, name)
     tries = {driver: _driven(objective, detail, driver, learnt) for driver in drivers}
     if volume or len(drivers) == 1:
-        driver, made = next(iter(tries.items()))
-        return ColourChoice(made, NAMES[driver], {}, plain if volume else _colours(objective, made)[0])
+        driver, coloured_detail = next(iter(tries.items()))
+        return ColourChoice(coloured_detail, NAMES[driver], {}, plain if volume else _colours(objective, coloured_detail)[0])
     if colour == "auto":
         tries = {"none": detail, **tries}
     try:
         judge = ColourDistance(target.pixels, target.mask, target.descriptor.metric)
-        found = {driver: _far(objective, made, judge, seeds) for driver, made in tries.items()}
+        distances = {driver: _far(objective, coloured_detail, judge, seeds) for driver, coloured_detail in tries.items()}
     except InputError:  # too little is seen of it to be compared
         return ColourChoice(detail, "none", {}, plain)
-    best = min(found, key=lambda driver: found[driver] * HANDICAPS.get(driver, 1.0))
-    return ColourChoice(tries[best], NAMES.get(best, "none"), found, _colours(objective, tries[best])[0])
+    best = min(distances, key=lambda driver: distances[driver] * PENALTIES.get(driver, 1.0))
+    return ColourChoice(tries[best], NAMES.get(best, "none"), distances, _colours(objective, tries[best])[0])
 
 
 def is_grey(pixels: NDArray[np.float32], mask: NDArray[np.bool_]) -> bool:

@@ -12,23 +12,24 @@ from voldetail.backend import mitsuba
 from voldetail.detail import rounded
 from voldetail.errors import InputError, VoldetailError
 from voldetail.fit.autolight import resolve_light
-from voldetail.fit.colour import ColourChoice, choose_colour
-from voldetail.fit.identifiability import Told, told_of_medium
-from voldetail.fit.interval import AmplitudeInterval, amplitude_interval
-from voldetail.fit.lightguess import LightGuess
+from voldetail.fit.colour import choose_colour
+from voldetail.fit.identifiability import medium_identifiability
+from voldetail.fit.interval import amplitude_interval
 from voldetail.fit.objective import Evaluation, Objective
 from voldetail.fit.plans import Stage, default_plan, paper_plan
 from voldetail.fit.provenance import Findings, signed
 from voldetail.fit.reflectance import colours
 from voldetail.fit.resolvable import space_of
-from voldetail.fit.result import FitResult
 from voldetail.fit.session import Progress, Session, State, Stopped, derived_seed
-from voldetail.fit.target import Target, load_photo_of, make_target
+from voldetail.fit.target import load_photo_of, make_target, reduced
+from voldetail.fit.warmstart.choose import starts_from
 from voldetail.fit.warmstart.start import Start
 from voldetail.image import Photo
-from voldetail.metric import METRICS
+from voldetail.library.building.build import BuildProgress
+from voldetail.metric import metric_named
 from voldetail.metric.anisotropy import anisotropy
 from voldetail.render.build import build
+from voldetail.results import AmplitudeInterval, ColourChoice, FitResult, Identifiability, LightGuess, Target
 from voldetail.setup.setup import SMALLEST_ZONE, Setup
 
 COLOUR_SEEDS = 3
@@ -37,7 +38,7 @@ COLOUR_SEEDS = 3
 INTERVAL_SEEDS = 2
 """Noise seeds for the intervals of numbers."""
 
-FEWEST_TOLD = 500
+FEWEST_FOR_LIBRARY = 500
 """Evaluations below which a library is not made for a fit: that takes longer than the fit."""
 
 FINALISTS = 3
@@ -50,26 +51,48 @@ def fit(
     on_progress: Callable[[Progress], None] = lambda progress: None,
     on_state: Callable[[State], None] = lambda state: None,
     on_target: Callable[[Target], None] = lambda target: None,
-    starts_for: Callable[[Setup, Target], Sequence[Start]] = lambda setup, target: (),
+    on_library_progress: Callable[[BuildProgress], None] = lambda progress: None,
+    on_remark: Callable[[str], None] = lambda sentence: None,
 ) -> FitResult:
     """Return the Detail whose rendering has the texture statistics of the photo (GD10 section 7).
 
     ``start`` continues an interrupted fit from one of the states handed to ``on_state``. Ctrl-C ends the search with
     the best so far. A light "auto" is estimated first; ``light_guess`` tells that the setup's light was estimated so
-    already, for the record. ``on_target`` gets what will be compared, before the search. ``starts_for`` may tell where to
-    start instead of covering the space, and the search is then shorter; it is asked for surfaces under the default solver and
-    metric only. Raises InputError for input that cannot be used.
+    already, for the record. ``on_target`` gets what will be compared, before the search. Surfaces under the default solver
+    and metric start from the reliefs of setup.fit.library instead of covering the space, and the search is then shorter;
+    ``on_library_progress`` follows the making of that library, where it is not there, and ``on_remark`` gets a sentence where
+    none can be had. Raises InputError for input that cannot be used.
     """
-    if setup.fit.metric not in METRICS:
-        raise InputError(f"There is no metric {setup.fit.metric!r}: choose one of {', '.join(METRICS)}.")
+    metric_named(setup.fit.metric)
     mitsuba()
     photo = photo or load_photo_of(setup)
-    setup, found = resolve_light(setup, photo)
-    light_guess = found or light_guess
+    setup, guess = resolve_light(setup, photo)
+    light_guess = guess or light_guess
     target = make_target(setup, photo)
     on_target(target)
-    starts = starts_for(setup, target) if (takes_starts(setup) if start is None else start.started) else ()
+    starts: Sequence[Start] = ()
+    if takes_starts(setup) if start is None else start.started:
+        starts = starts_from(setup, target, on_progress=on_library_progress, on_remark=on_remark)
     session, stages = _session(setup, target, start, starts, on_progress, on_state)
+    status, interrupted = _search(session, stages)
+    final = _finish(session)
+    heights = None if interrupted else _heights(setup, session, final)
+    identifiability = () if interrupted else _identifiability(session, final)
+    final, background = coloured(target, final)
+    colour = None if interrupted else _colour(setup, session, final)
+    if colour is not None:
+        final = replace(final, detail=colour.detail)
+    return FitResult(
+        detail=signed(final, setup, target, session, Findings(status, light_guess, heights, identifiability, background, colour)),
+        setup=setup, target=target,
+        picture=final.picture, covered=final.covered, background=background, distance=final.distance,
+        evaluations=session.evaluations, seconds=session.seconds, status=status, trace=tuple(session.trace),
+        interrupted=interrupted, light_guess=light_guess, heights=heights, identifiability=identifiability, colour=colour,
+    )
+
+
+def _search(session: Session, stages: Sequence[Stage]) -> tuple[str, bool]:
+    """Carry out the plan, as far as it gets; returns why it ended, and whether the user ended it."""
     status, interrupted = "the plan was carried out", False
     try:
         while session.stage < len(stages):
@@ -88,27 +111,14 @@ def fit(
         session.pool = [session.first]
     if not session.pool:
         raise VoldetailError("The fit was stopped before a first detail was found: let it run a little longer.")
-    final = _finish(session)
-    heights = None if interrupted else _heights(setup, session, final)
-    told = () if interrupted else _told(session, final)
-    final, background = coloured(target, final)
-    colour = None if interrupted else _colour(setup, session, final)
-    if colour is not None:
-        final = replace(final, detail=colour.detail)
-    return FitResult(
-        detail=signed(final, setup, target, session, Findings(status, light_guess, heights, told, background, colour)),
-        setup=setup, target=target,
-        picture=final.picture, covered=final.covered, background=background, distance=final.distance,
-        evaluations=session.evaluations, seconds=session.seconds, status=status, trace=tuple(session.trace),
-        interrupted=interrupted, light_guess=light_guess, heights=heights, told=told, colour=colour,
-    )
+    return status, interrupted
 
 
 def takes_starts(setup: Setup) -> bool:
     """Whether a fit of ``setup`` is told where to start: the default one of a relief, unless it is to be a short one."""
     settings = setup.fit
     usual = setup.mode == "displacement" and settings.solver == "default" and settings.metric == "combined"
-    short = settings.library == "auto" and settings.evaluations is not None and settings.evaluations < FEWEST_TOLD
+    short = settings.library == "auto" and settings.evaluations is not None and settings.evaluations < FEWEST_FOR_LIBRARY
     return usual and not short and settings.library != "none"
 
 
@@ -144,11 +154,11 @@ def _coarse(setup: Setup, target: Target) -> Objective:
     half = setup.model_copy(update={"photo": setup.photo.model_copy(update={"resolution": resolution})})
     surface = build(half, target.shape, target.zone)
     try:
-        reduced = target.reduced(setup.fit.metric, (surface.view.rows, surface.view.columns))
+        smaller = reduced(target, setup.fit.metric, (surface.view.rows, surface.view.columns))
     except InputError:
         # The mask leaves enough at full resolution, and too little at half.
-        reduced, surface = target, build(setup, target.shape, target.zone)
-    return Objective(reduced, surface, specular=setup.fit.specular)
+        smaller, surface = target, build(setup, target.shape, target.zone)
+    return Objective(smaller, surface, specular=setup.fit.specular)
 
 
 def _finish(session: Session) -> Evaluation:
@@ -189,12 +199,13 @@ def _heights(setup: Setup, session: Session, final: Evaluation) -> AmplitudeInte
         return None
 
 
-def _told(session: Session, final: Evaluation) -> tuple[Told, ...]:
+def _identifiability(session: Session, final: Evaluation) -> tuple[Identifiability, ...]:
     """Return what the photo tells of a medium, at the coarse objective's resolution: there are a hundred pictures to make."""
     if final.detail.medium is None:
         return ()
     try:
-        return told_of_medium(session.coarse, final.detail, [session.unseen_seed(index) for index in range(INTERVAL_SEEDS)])
+        seeds = [session.unseen_seed(index) for index in range(INTERVAL_SEEDS)]
+        return medium_identifiability(session.coarse, final.detail, seeds)
     except KeyboardInterrupt:
         return ()
 

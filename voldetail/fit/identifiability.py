@@ -8,13 +8,13 @@ asymmetry and the light's strength) are told less well than this says, since the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from voldetail.detail import Detail, bounds, parameter, values_of, with_values
 from voldetail.fit.interval import FACTORS, near
 from voldetail.fit.objective import Objective
+from voldetail.results.identifiability import Identifiability
 
 ASYMMETRIES = (-0.4, -0.2, 0.0, 0.2, 0.4, 0.6, 0.75, 0.9)
 ALBEDOS = (0.2, 0.5, 0.7, 0.85, 0.95, 0.99, 1.0)
@@ -23,33 +23,13 @@ ALBEDOS = (0.2, 0.5, 0.7, 0.85, 0.95, 0.99, 1.0)
 NUMBERS = ("relief.amplitude", "medium.thickness", "medium.exponent", "medium.extinction", "medium.asymmetry", "medium.albedo")
 
 
-@dataclass(frozen=True)
-class Told:
-    """One number: its key and value, and between which values pictures are nearly as near to the photo as the best one's.
-
-    least, most: of what was tried; an interval that ends there is open.
-    """
-
-    key: str
-    value: float
-    low: float
-    high: float
-    least: float
-    most: float
-
-    @property
-    def nothing(self) -> bool:
-        """Whether the photo tells nothing of it: all that was tried is near."""
-        return self.low <= self.least and self.high >= self.most
-
-
-def told_of_medium(objective: Objective, detail: Detail, seeds: Sequence[int]) -> tuple[Told, ...]:
+def medium_identifiability(objective: Objective, detail: Detail, seeds: Sequence[int]) -> tuple[Identifiability, ...]:
     """Return what the photo of ``objective`` tells of each number of the medium ``detail``, by pictures under ``seeds``."""
     other = Objective(objective.target, objective.surface, specular=False, reduced=objective.reduced)
-    return tuple(_told(other, detail, key, seeds) for key in NUMBERS)
+    return tuple(_identifiability(other, detail, key, seeds) for key in NUMBERS)
 
 
-def _told(objective: Objective, detail: Detail, key: str, seeds: Sequence[int]) -> Told:
+def _identifiability(objective: Objective, detail: Detail, key: str, seeds: Sequence[int]) -> Identifiability:
     value = float(values_of(detail)[key])
     low, high = bounds(key)
     # Factors are equally far apart on a logarithmic scale.
@@ -66,4 +46,4 @@ def _told(objective: Objective, detail: Detail, key: str, seeds: Sequence[int]) 
     # Rounding of the logarithm is not to open or close an end.
     least, most = tried[0], tried[-1]
     first, last = (least if ends[0] <= least * (1 + 1e-9) else ends[0]), (most if ends[1] >= most * (1 - 1e-9) else ends[1])
-    return Told(key, value, min(first, value), max(last, value), least, most)
+    return Identifiability(key, value, min(first, value), max(last, value), least, most)

@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.detail import Detail, bounds
 from voldetail.fit.objective import Objective
+from voldetail.results.interval import AmplitudeInterval
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.light import angles_of, direction_of
 
@@ -28,29 +29,6 @@ ELEVATIONS = (-10.0, 0.0, 10.0)
 
 TOLERANCE = 1.1
 """Factor on the lowest distance up to which a picture still counts as near."""
-
-
-@dataclass(frozen=True)
-class AmplitudeInterval:
-    """Amplitudes in scene units whose pictures are nearly as near to the photo as the best one's.
-
-    low, high: under the light given. low_any, high_any: also under one up to 10 degrees lower or higher (the same
-    where a light has no elevation). Both hold the fitted amplitude. An end at that of ``amplitudes`` is open: nothing
-    beyond was looked at.
-    amplitudes, distances, distances_any: what was looked at, with the mean distance over seeds.
-    """
-
-    low: float
-    high: float
-    low_any: float
-    high_any: float
-    amplitudes: tuple[float, ...]
-    distances: tuple[float, ...]
-    distances_any: tuple[float, ...]
-
-    @property
-    def ends(self) -> dict[str, float]:
-        return {"low": self.low, "high": self.high, "low_any": self.low_any, "high_any": self.high_any}
 
 
 def amplitude_interval(objective: Objective, detail: Detail, seeds: Sequence[int]) -> AmplitudeInterval:
@@ -75,17 +53,17 @@ def amplitude_interval(objective: Objective, detail: Detail, seeds: Sequence[int
 
 
 def _lamps(lamp: Lamp) -> Iterator[Lamp]:
-    if lamp.direction is None:
+    if lamp.near:
         yield lamp
         return
-    azimuth, elevation = angles_of(lamp.direction)
+    azimuth, elevation = angles_of(lamp.source)
     for step in ELEVATIONS:
         turned = min(max(elevation + step, 1.0), 90.0)
         yield lamp if step == 0.0 else replace(lamp, direction=direction_of(azimuth, turned))
 
 
 def _under(objective: Objective, lamp: Lamp) -> Objective:
-    # A new one for the given light too: these looks are no part of the search's evaluations.
+    # A new one for the given light too: these pictures are no part of the search's evaluations.
     return Objective(
         replace(objective.target, lamp=lamp), objective.surface, specular=objective.specular,
         subsamples=objective.subsamples, reduced=objective.reduced,

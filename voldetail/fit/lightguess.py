@@ -23,6 +23,7 @@ from scipy.ndimage import gaussian_filter, uniform_filter
 
 from voldetail.fit.zone import main_wavelength
 from voldetail.image import resize, resize_mask
+from voldetail.results.light_guess import LightGuess
 
 Picture = NDArray[np.float64]
 
@@ -30,7 +31,7 @@ ANALYSED = 512
 """Longest side in pixels at which a photo is looked at."""
 
 SCALES = (0.07, 0.14)
-"""Blurs before gradients are taken, in main wavelengths of the texture; tuned on the captures of ../shared/data."""
+"""Blurs before gradients are taken, in main wavelengths of the texture; tuned on captures of textured surfaces."""
 
 SMALLEST_BLUR = 0.7  # pixels: below it a gradient is the camera's grain
 SLOW = 3.0  # main wavelengths: what varies more slowly is the scene's shading and is divided out
@@ -58,7 +59,7 @@ FLAT = 1e-4
 HALF_SURE, CHANCE, OVER = 0.12, 0.5, 0.1
 """Coherence of an axis that is right half the time, what chance makes of it, and the excess over STRETCHED that halves
 its worth; tuned so that the confidence is
-about the share of azimuths within 30 degrees over the captures of ../shared/data and renderings."""
+about the share of azimuths within 30 degrees over captures of textured surfaces and renderings."""
 
 FLOOR = 0.1
 """Confidence below which the light is not known at all."""
@@ -67,21 +68,6 @@ FAIRLY_SURE, UNSURE, UNCERTAIN_SIGN = 0.5, 0.3, 0.7
 
 ELEVATION_BAND = 20
 """Degrees within which the elevation was for some four in five captures, most of them 50 to 85 degrees high."""
-
-
-@dataclass(frozen=True)
-class LightGuess:
-    """A guessed light: angles in degrees as on the command line.
-
-    confidence: about the share of such photos in which the azimuth is within 30 degrees; sign_confidence: that in which
-    the light is at this end of its axis, 0.5 for a coin. sentence: the same for people.
-    """
-
-    azimuth: float
-    elevation: float
-    confidence: float
-    sign_confidence: float
-    sentence: str
 
 
 @dataclass(frozen=True)

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from voldetail.detail import Detail
 from voldetail.errors import InputError
 from voldetail.fit.reflectance import solve
-from voldetail.fit.target import Target
 from voldetail.image import resize, resize_mask
 from voldetail.metric import Descriptor, describe, distance
 from voldetail.render.heightfield import HeightField
 from voldetail.render.mesh_surface import MeshSurface
 from voldetail.render.unit_components import SHININESS, Components, components
 from voldetail.render.volume import Volume
+from voldetail.results import Target
 
 UNUSABLE = 1e3
 """Distance of a picture that cannot be compared (the surface left the mask): far, but a number for the search."""
@@ -97,17 +97,17 @@ class Objective:
         mask = self.target.mask if medium else self.target.mask & (parts.covered > COVERED)
         if not mask.any():
             return Evaluation(detail, UNUSABLE, UNUSABLE, np.zeros_like(self.target.luminance), mask, parts.covered)
-        found = solve(self.target.luminance, parts, mask, specular=self.specular, background=medium)
-        picture = parts.luminance(found.ambient, found.diffuse, found.specular, found.shininess)
+        coefficients = solve(self.target.luminance, parts, mask, specular=self.specular, background=medium)
+        picture = parts.luminance(coefficients.ambient, coefficients.diffuse, coefficients.specular, coefficients.shininess)
         if medium:
-            picture = picture + np.float32(found.background) * (1.0 - parts.covered)
+            picture = picture + np.float32(coefficients.background) * (1.0 - parts.covered)
         picture = np.minimum(picture, self.target.white)
         detail = detail.model_copy(
             update={
                 "reflectance": detail.reflectance.model_copy(
                     update={
-                        "ambient": found.ambient, "diffuse": found.diffuse, "specular": found.specular,
-                        "shininess": found.shininess, "tint": self.target.tint,
+                        "ambient": coefficients.ambient, "diffuse": coefficients.diffuse, "specular": coefficients.specular,
+                        "shininess": coefficients.shininess, "tint": self.target.tint,
                     }
                 )
             }
@@ -118,7 +118,7 @@ class Objective:
                 score = 0.5 * (value + self._reduced_distance(self.reduced, picture, mask))
         except InputError:
             value = score = UNUSABLE
-        return Evaluation(detail, value, score, picture, mask, parts.covered, found.background)
+        return Evaluation(detail, value, score, picture, mask, parts.covered, coefficients.background)
 
     def _reduced_distance(self, reduced: Target, picture: NDArray[np.float32], mask: NDArray[np.bool_]) -> float:
         used = reduced.mask

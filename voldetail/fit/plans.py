@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from voldetail.fit.space import Space
 from voldetail.fit.warmstart.start import Start
 
 Anisotropy = tuple[float, float]
+
+Round = tuple[int, int, bool]
+"""Of successive halving: candidates kept, evaluations for each, whether at full resolution."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +48,7 @@ class Effort:
     """
 
     cover: int
-    rounds: tuple[tuple[int, int, bool], ...]
+    rounds: tuple[Round, ...]
     last: int
 
 
@@ -76,15 +80,15 @@ def default_plan(
     rounds = effort.rounds
     fine_rounds = [index for index, (_, _, fine) in enumerate(rounds) if fine]
     ranked = UNSEEN_SEEDS * (sum(rounds[index][0] for index in (fine_rounds[0] - 1, *fine_rounds)) + 2)
-    looks = [start.candidate(space) for start in starts] or archetypes(space, anisotropy)
-    total = len(looks) + effort.cover + sum(count * each for count, each, _ in rounds) + effort.last + ranked
+    first = [start.candidate(space) for start in starts] or archetypes(space, anisotropy)
+    total = len(first) + effort.cover + sum(count * each for count, each, _ in rounds) + effort.last + ranked
     factor = 1.0 if evaluations is None else evaluations / total
 
     def scaled(count: int) -> int:
         return max(4, round(count * factor))
 
     def cover(session: Session) -> None:
-        candidates = looks[:: math.ceil(1.0 / factor)] if factor < 1.0 else list(looks)
+        candidates = first[:: math.ceil(1.0 / factor)] if factor < 1.0 else list(first)
         if effort.cover:
             candidates += sampled(space, scaled(effort.cover), derived_seed(session.root_seed, "cover"), anisotropy)
         _compare(session, candidates)
@@ -92,38 +96,40 @@ def default_plan(
         if starts:
             session.pool = [c for c in session.pool if c.value <= WORTH_A_SEARCH * session.pool[0].value]
 
-    def halving(index: int) -> Callable[[Session], None]:
-        count, each, fine = rounds[index]
-
-        def run(session: Session) -> None:
-            session.pool = session.pool[:count]
-            # Where fewer are worth it, they get what the others would have had.
-            _refine_pool(session, scaled(each * count // max(len(session.pool), 1)), fine=fine)
-            if fine or rounds[index + 1][2]:
-                # What goes on to full resolution is chosen there: families that tie at half of it do not at full.
-                _rank(session)
-            else:
-                session.pool.sort(key=lambda c: c.value)
-
-        return run
-
-    def last(session: Session) -> None:
-        before = session.pool[0]
-        session.pool = [before]
-        _refine_one(session, 0, scaled(effort.last), fine=True)
-        # What was there stays in the race: the last search may have fitted its own seeds only.
-        session.pool = [session.pool[0], before]
-        _rank(session)
-
     names = ("trying many families", "searching the better half", "refining the best three", "refining the best two")
     return Plan(
         (
             Stage("comparing reliefs of the library" if starts else "covering the space", cover),
-            *(Stage(name, halving(index)) for index, name in enumerate(names[-len(rounds) :])),
-            Stage("refining the best", last),
+            *(
+                Stage(name, partial(_halve, rounds=rounds, index=index, scaled=scaled))
+                for index, name in enumerate(names[-len(rounds) :])
+            ),
+            Stage("refining the best", partial(_refine_winner, budget=scaled(effort.last))),
         ),
         evaluations or total,
     )
+
+
+def _halve(session: Session, rounds: Sequence[Round], index: int, scaled: Callable[[int], int]) -> None:
+    """Keep the best of the pool, and search each of them further."""
+    count, each, fine = rounds[index]
+    session.pool = session.pool[:count]
+    # Where fewer are worth it, they get what the others would have had.
+    _refine_pool(session, scaled(each * count // max(len(session.pool), 1)), fine=fine)
+    if fine or rounds[index + 1][2]:
+        # What goes on to full resolution is chosen there: families that tie at half of it do not at full.
+        _rank(session)
+    else:
+        session.pool.sort(key=lambda c: c.value)
+
+
+def _refine_winner(session: Session, budget: int) -> None:
+    before = session.pool[0]
+    session.pool = [before]
+    _refine_one(session, 0, budget, fine=True)
+    # What was there stays in the race: the last search may have fitted its own seeds only.
+    session.pool = [session.pool[0], before]
+    _rank(session)
 
 
 PAPER_SHARE = 0.5

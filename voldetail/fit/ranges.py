@@ -1,18 +1,15 @@
-"""What is searched how far: ranges narrower than a detail allows, and what families have to pay for themselves."""
+"""What is searched how far, and what families have to pay for themselves.
+
+A parameter's own range stands with its declaration; here are the numbers that are no parameters, or have a range of their own
+where stones or plates are searched."""
 
 from __future__ import annotations
 
 SHAPE_RANGE = 1.5
 """Range of the numbers that shape H: exp(2 x 1.5) = 20 between its steepest and flattest part by each, at most."""
 
-HEIGHT_ALBEDO = (-0.1, 0.35)
-CELL_ALBEDO = (0.0, 0.35)
-"""Ranges that are searched: dust and moss sit in hollows more often than on tops. Wider ones let the search paint flat
-ground instead of raising it; tuned on gravel and grass."""
-
-SPECKLE = (0.0, 0.5)
 FINEST_SPECKS = 2.0
-"""Strength of the specks, and how much coarser than the finest octave they may be: larger ones are seen as scales."""
+"""How much coarser than the finest octave specks may be: larger ones are seen as scales."""
 
 STONE_HEIGHT = (0.4, 1.2)
 """Range of the amplitude in cells where stones are searched: they are about as high as wide, never a flat mosaic."""
@@ -20,18 +17,8 @@ STONE_HEIGHT = (0.4, 1.2)
 STONE_STRETCH = (0.6, 1.67)
 """Range of the anisotropy where stones are searched: they lie every way, and what the light stretches is not theirs."""
 
-ELONGATION = (1.0, 2.2)
-SIZE_SPREAD = (0.0, 0.55)
-"""Ranges that leave hardly any ground between stones (see noise.grains)."""
-
-GAIN = (0.05, 1.5)
 STONE_GAIN = (0.05, 0.4)
-"""Ranges of the octaves' gain; rougher stones lose their outlines and look like cauliflower."""
-
-PLATE_HEIGHT = (0.0, 4.0)
-PLATE_TILT = (0.0, 4.0)
-PLATE_BEVEL = (0.04, 0.35)
-"""Ranges of plates; a wider bevel leaves no plate between the cracks. Tuned by eye on mud, slate, bark and gravel."""
+"""Range of the octaves' gain where stones are searched; rougher stones lose their outlines and look like cauliflower."""
 
 PLATE_GAIN = (0.05, 0.6)
 PLATE_DUST = (-0.1, 0.15)
@@ -45,20 +32,18 @@ SOLID_ROUGHNESS = (0.05, 1.2)
 MEDIUM_ROUGHNESS = (0.3, 3.0)
 SOFTNESS = (0.5, 2.5)
 DEPTH = (1.0, 25.0)
-EXPONENT = (0.7, 8.0)
-ASYMMETRY = (0.0, 0.9)
-"""Ranges of a medium: its amplitude in cells, its shell's thickness and the optical depth in amplitudes, d_h and g. Drops of
-water and ice scatter forwards. Harder and denser ones look like balls of plaster, and were found on a photo of clouds."""
+"""Ranges of a medium: its amplitude in cells, its shell's thickness and the optical depth in amplitudes. Harder and
+denser ones look like balls of plaster, and were found on a photo of clouds."""
 
 OCTAVES, MEDIUM_OCTAVES = (1, 3), (2, 5)
 """Fewest and most; clouds are ragged at every size."""
 
-FOLD_HANDICAP = 1.2
-STRIPED_CELLS_HANDICAP = 1.15
-STONES_HANDICAP = 0.95
-PIGMENT_HANDICAP = 1.05
-GRAINS_HANDICAP = 1.1
-PLATES_HANDICAP = 1.1
+FOLD_PENALTY = 1.2
+STRIPED_CELLS_PENALTY = 1.15
+STONES_PENALTY = 0.95
+PIGMENT_PENALTY = 1.05
+BORDERED_PENALTY = 1.1
+PLATES_PENALTY = 1.1
 """Factors on the distance by how often a family looks like nature where it scores like nature. A folded H, and stripes
 within single cells, fit much and look like little; so do cells that fit together like paving (on rock with plants they were
 five percent nearer than crusts, and looked like cobbles), plates among them; stones look right where they are only almost

@@ -30,10 +30,10 @@ ACTIVE_SET_STEPS = 12
 
 GLOSS_GAIN = 0.7
 """Share of a matt surface's residual that a highlight may at most leave: a broad one on flat relief can stand for shading
-that relief should make, and then shines on every other shape. Tuned on the weathered rock of ../shared/data."""
+that relief should make, and then shines on every other shape. Tuned on a weathered rock."""
 
 GLOSS_LIMIT = 0.06
-"""Largest Ks: what a dielectric of index 1.65 reflects head-on. With more, white lichen on a slab of ../shared/data became
+"""Largest Ks: what a dielectric of index 1.65 reflects head-on. With more, white lichen on a slab became
 a mirror."""
 
 DARKEST_BACKGROUND = 0.6
@@ -82,8 +82,8 @@ def solve(
         # What shows through is not brighter than the photo, nor much darker: some cloud is before its darkest part too.
         least, most = DARKEST_BACKGROUND * float(wanted[0]), float(wanted[-1])
         first = np.array([0.3, 0.5, least])
-        found, residual = _alternate(columns, wanted, weights, first, STEPS, (1.0, 1.0, most), (0.0, 0.0, least))
-        return Coefficients(float(found[0]), float(found[1]), 0.0, parts.shininess[0], residual, float(found[2]))
+        solution, residual = _alternate(columns, wanted, weights, first, STEPS, (1.0, 1.0, most), (0.0, 0.0, least))
+        return Coefficients(float(solution[0]), float(solution[1]), 0.0, parts.shininess[0], residual, float(solution[2]))
     best: Coefficients | None = None
     # Matt first: a highlight has to be worth it.
     lobes = (-1, *range(len(parts.shininess))) if specular else (-1,)
@@ -92,13 +92,13 @@ def solve(
         used = [ambient, diffuse] + ([parts.specular[lobe].ravel()[index]] if lobe >= 0 else [])
         columns, count = np.stack(used, axis=1).astype(np.float64), len(used)
         first = np.append(start, 0.05)[:count]
-        found, residual = _alternate(columns, wanted, weights, first, steps, (1.0, 1.0, GLOSS_LIMIT)[:count])
+        solution, residual = _alternate(columns, wanted, weights, first, steps, (1.0, 1.0, GLOSS_LIMIT)[:count])
         # The other lobes start where the first one ended, so one step less settles them.
-        start, steps = found[:2], STEPS - 1
+        start, steps = solution[:2], STEPS - 1
         if best is None or residual < best.residual * (GLOSS_GAIN if best.specular == 0.0 else 1.0):
-            gloss = float(found[2]) if lobe >= 0 else 0.0
+            gloss = float(solution[2]) if lobe >= 0 else 0.0
             exponent = parts.shininess[lobe] if lobe >= 0 else parts.shininess[0]
-            best = Coefficients(float(found[0]), float(found[1]), gloss, exponent, residual)
+            best = Coefficients(float(solution[0]), float(solution[1]), gloss, exponent, residual)
     assert best is not None
     return best
 

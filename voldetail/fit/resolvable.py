@@ -8,8 +8,8 @@ from voldetail.detail import bounds
 from voldetail.errors import InputError
 from voldetail.fit.ranges import MEDIUM_ROUGHNESS, ROUGHNESS, SOLID_ROUGHNESS
 from voldetail.fit.space import Space
-from voldetail.fit.target import Target
 from voldetail.render.build import edge_of
+from voldetail.results import Target
 from voldetail.setup.setup import Setup
 from voldetail.setup.view import view_of
 

@@ -125,7 +125,7 @@ class Session:
             raise Stopped("the time limit was reached")
 
     def value(self, objective: Objective, kind: Kind, vector: Vector, seed: int) -> float:
-        """Return the score at one vector times the handicap of its kind; keeps the best full-resolution picture."""
+        """Return the score at one vector times the penalty of its kind; keeps the best full-resolution picture."""
         return next(self.values(objective, [(kind, vector)], seed))
 
     def values(self, objective: Objective, places: Sequence[tuple[Kind, Vector]], seed: int) -> Iterator[float]:
@@ -137,7 +137,7 @@ class Session:
                 yield self.space.decode(kind, vector)
 
         for (kind, vector), evaluation in zip(places, objective.evaluate_all(details(), seed), strict=True):
-            value = evaluation.score * kind.handicap
+            value = evaluation.score * kind.penalty
             if self.first is None or value < self.first.value:
                 self.first = Candidate(kind, vector, value)
             if objective is self.fine:

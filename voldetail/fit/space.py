@@ -8,66 +8,64 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voldetail.detail import Detail, bounds, parameter
-from voldetail.detail.record import MediumParameters, NoiseParameters, Reflectance, ReliefParameters
+from voldetail.detail import (
+    Detail,
+    MediumParameters,
+    NoiseParameters,
+    Reflectance,
+    ReliefParameters,
+    bounds,
+    parameter,
+    parameters_of,
+)
 from voldetail.fit.profiles import SHAPE_COUNT, fold, profile
 from voldetail.fit.ranges import (
-    ASYMMETRY,
-    CELL_ALBEDO,
+    BORDERED_PENALTY,
     DEPTH,
-    ELONGATION,
-    EXPONENT,
     FINEST_SPECKS,
-    FOLD_HANDICAP,
-    GAIN,
-    GRAINS_HANDICAP,
-    HEIGHT_ALBEDO,
+    FOLD_PENALTY,
     LOGARITHMIC,
     OF_PLATES,
     OF_STONES,
-    PIGMENT_HANDICAP,
+    PIGMENT_PENALTY,
     PLAIN_NAME,
-    PLATE_BEVEL,
     PLATE_DUST,
     PLATE_GAIN,
-    PLATE_HEIGHT,
-    PLATE_TILT,
-    PLATES_HANDICAP,
+    PLATES_PENALTY,
     ROUGHNESS,
     SHAPE_RANGE,
-    SIZE_SPREAD,
     SOFTNESS,
-    SPECKLE,
     STONE_GAIN,
     STONE_HEIGHT,
     STONE_STRETCH,
-    STONES_HANDICAP,
-    STRIPED_CELLS_HANDICAP,
+    STONES_PENALTY,
+    STRIPED_CELLS_PENALTY,
 )
 from voldetail.render.volume import CELL_DEPTH, thinnest_edge
 
 Vector = NDArray[np.float64]
 
-GRAINS = (1.0, -1.0, 1.0)
+BORDERED = (1.0, -1.0, 1.0)
+"""Weights of the closest points by which the noise is F2 - F1: zero on the borders of cells."""
 
-PIGMENT = ("height_albedo", "cell_albedo", "speckle", "speckle_scale")
+PAPER_OCTAVES = ("noise.lacunarity",)
+"""What GD10's octaves have; the gain is ours."""
 
 MEDIUM_NAMES = ("softness", "medium.exponent", "depth", "medium.asymmetry")
-
 
 
 @dataclass(frozen=True)
 class Kind:
     """What is discrete: ranks of feature points, envelope, octaves, whether there are stripes, how H is folded.
 
-    grains: the second point counts against the first, so that the noise vanishes on the border of cells. stones: the
+    bordered: the second point counts against the first (F2 - F1), so that the noise vanishes on the border of cells. stones: the
     highest kernel alone counts, each a body of its own shape. plates: cells have planes of their own. pigment: albedo
-    varies with height, from grain to grain and by specks. fold: "none" keeps H monotone; "ridge" is 1 - |2H - 1| of a
+    varies with height, from cell to cell and by specks. fold: "none" keeps H monotone; "ridge" is 1 - |2H - 1| of a
     monotone H, "billow" |2H - 1|.
     """
 
@@ -77,21 +75,21 @@ class Kind:
     octaves: int
     striped: bool
     fold: str = "none"
-    grains: bool = False
+    bordered: bool = False
     pigment: bool = False
     stones: bool = False
     plates: bool = False
 
     @property
-    def handicap(self) -> float:
+    def penalty(self) -> float:
         """Factor on the distance by which what goes beyond GD10, or seldom looks like nature, has to pay for itself."""
         return math.prod(
             factor
             for applies, factor in (
-                (self.fold != "none", FOLD_HANDICAP),
-                (self.striped and (self.first, self.last) != (1, 50), STRIPED_CELLS_HANDICAP),
-                (self.stones, STONES_HANDICAP), (self.pigment, PIGMENT_HANDICAP),
-                (self.grains, GRAINS_HANDICAP), (self.plates, PLATES_HANDICAP),
+                (self.fold != "none", FOLD_PENALTY),
+                (self.striped and (self.first, self.last) != (1, 50), STRIPED_CELLS_PENALTY),
+                (self.stones, STONES_PENALTY), (self.pigment, PIGMENT_PENALTY),
+                (self.bordered, BORDERED_PENALTY), (self.plates, PLATES_PENALTY),
             )
             if applies
         )
@@ -134,17 +132,11 @@ class Space:
         if self.amplitude is None:
             out.append("roughness")
         if kind.octaves > 1:
-            out += ["noise.lacunarity"] if self.plain else ["noise.lacunarity", "noise.gain"]
-        if kind.stones:
-            out += ["noise.facets", "noise.elongation", "noise.size_spread"]
-        if kind.plates:
-            out += ["noise.cell_height", "noise.cell_tilt", "noise.bevel"]
-        if kind.striped:
-            out += ["noise.stripe_frequency", "noise.stripe_spread"]
-        if self.medium:
-            out += MEDIUM_NAMES
-        if kind.pigment:
-            out += [f"reflectance.{name}" for name in PIGMENT]
+            out += PAPER_OCTAVES if self.plain else _keys("octaves")
+        for part, there in (("stones", kind.stones), ("plates", kind.plates), ("stripes", kind.striped)):
+            out += _keys(part) if there else []
+        out += MEDIUM_NAMES if self.medium else ()
+        out += _keys("pigment") if kind.pigment else []
         if kind.stones:
             return [OF_STONES.get(name, name) for name in (*out, "shape.0")]
         if kind.plates:
@@ -159,16 +151,11 @@ class Space:
         own = {
             "noise.scale": self.scale, "roughness": self.roughness, "stone_height": STONE_HEIGHT,
             "stone_stretch": STONE_STRETCH,
-            "stone_profile": (0.0, SHAPE_RANGE), "noise.gain": GAIN, "stone_gain": STONE_GAIN,
-            "plate_gain": PLATE_GAIN, "plate_dust": PLATE_DUST,
-            "noise.cell_height": PLATE_HEIGHT, "noise.cell_tilt": PLATE_TILT, "noise.bevel": PLATE_BEVEL,
-            "noise.elongation": ELONGATION, "noise.size_spread": SIZE_SPREAD, "noise.anisotropy": self.anisotropy,
-            "noise.stripe_frequency": self.stripes, "reflectance.height_albedo": HEIGHT_ALBEDO,
-            "reflectance.cell_albedo": CELL_ALBEDO, "reflectance.speckle": SPECKLE,
-            "reflectance.speckle_scale": (specks / FINEST_SPECKS, specks),
-            "softness": SOFTNESS, "depth": DEPTH, "medium.exponent": EXPONENT, "medium.asymmetry": ASYMMETRY,
+            "stone_profile": (0.0, SHAPE_RANGE), "stone_gain": STONE_GAIN, "plate_gain": PLATE_GAIN, "plate_dust": PLATE_DUST,
+            "noise.anisotropy": self.anisotropy, "noise.stripe_frequency": self.stripes,
+            "reflectance.speckle_scale": (specks / FINEST_SPECKS, specks), "softness": SOFTNESS, "depth": DEPTH,
         }.get(name)
-        low, high = own or bounds(name)
+        low, high = own or parameter(name).searched or bounds(name)
         return low, high, name in LOGARITHMIC or (name.startswith("noise.") and parameter(name).scale == "log")
 
     def at(self, name: str, unit: float) -> float:
@@ -184,36 +171,29 @@ class Space:
             values[PLAIN_NAME.get(name, name)] = self.at(name, unit)
         shape = np.array([values.get(f"shape.{i}", 0.0) for i in range(SHAPE_COUNT)])
         lacunarity = values.get("noise.lacunarity", parameter("noise.lacunarity").default)
-        shown = 1 + int(max(0.0, math.log(self.finest / values["noise.scale"]) / math.log(lacunarity)))
+        resolvable = 1 + int(max(0.0, math.log(self.finest / values["noise.scale"]) / math.log(lacunarity)))
         noise = NoiseParameters(
             domain=self.domain, first_neighbour=kind.first, last_neighbour=kind.last, envelope=kind.envelope,  # type: ignore[arg-type]
-            weights=GRAINS if kind.grains else (1.0, 1.0, 1.0), joining="highest" if kind.stones else "sum",
-            facets=values.get("noise.facets", 0.0), elongation=values.get("noise.elongation", 1.0),
-            size_spread=values.get("noise.size_spread", 0.0), octaves=min(kind.octaves, shown), lacunarity=lacunarity,
-            cell_height=values.get("noise.cell_height", 0.0), cell_tilt=values.get("noise.cell_tilt", 0.0),
-            bevel=values.get("noise.bevel", parameter("noise.bevel").default),
-            gain=values.get("noise.gain", 1.0), stripe_frequency=values.get("noise.stripe_frequency", 0.0),
-            stripe_spread=values.get("noise.stripe_spread", 0.0),
-            scale=values["noise.scale"], anisotropy=values["noise.anisotropy"], angle=values["noise.angle"],
-            curve=tuple(float(v) for v in fold(profile(shape), kind.fold)),
+            weights=BORDERED if kind.bordered else (1.0, 1.0, 1.0), joining="highest" if kind.stones else "sum",
+            octaves=min(kind.octaves, resolvable), curve=tuple(float(v) for v in fold(profile(shape), kind.fold)),
+            **_of_group(values, "noise"),
         )
         amplitude = self.amplitude
         if amplitude is None:
             amplitude = min(values["roughness"] / values["noise.scale"], self.highest)
-        pigment = Reflectance()
-        if kind.pigment:
-            pigment = pigment.model_copy(update={name: values[f"reflectance.{name}"] for name in PIGMENT})
-        medium = None
-        if self.medium:
-            # What changes faster than the grid's cells would not be seen as it is.
-            thickness = max(values["softness"] * amplitude, thinnest_edge(self.cell, values["medium.exponent"]))
-            extinction = min(values["depth"] / amplitude, CELL_DEPTH / self.cell if self.cell else math.inf)
-            medium = MediumParameters(
-                thickness=float(np.clip(thickness, *bounds("medium.thickness"))), exponent=values["medium.exponent"],
-                extinction=float(np.clip(extinction, *bounds("medium.extinction"))), asymmetry=values["medium.asymmetry"],
-            )
         return Detail(
-            mode=self.mode, noise=noise, relief=ReliefParameters(amplitude=amplitude), reflectance=pigment, medium=medium
+            mode=self.mode, noise=noise, relief=ReliefParameters(amplitude=amplitude),
+            reflectance=Reflectance().model_copy(update=_of_group(values, "reflectance")),
+            medium=self._medium(values, amplitude) if self.medium else None,
+        )
+
+    def _medium(self, values: dict[str, float], amplitude: float) -> MediumParameters:
+        # What changes faster than the grid's cells would not be seen as it is.
+        thickness = max(values["softness"] * amplitude, thinnest_edge(self.cell, values["medium.exponent"]))
+        extinction = min(values["depth"] / amplitude, CELL_DEPTH / self.cell if self.cell else math.inf)
+        return MediumParameters(
+            thickness=float(np.clip(thickness, *bounds("medium.thickness"))), exponent=values["medium.exponent"],
+            extinction=float(np.clip(extinction, *bounds("medium.extinction"))), asymmetry=values["medium.asymmetry"],
         )
 
     def encode(self, kind: Kind, values: dict[str, float]) -> Vector:
@@ -227,3 +207,13 @@ class Space:
             value = min(max(values[name], low), high)
             out.append(math.log(value / low) / math.log(high / low) if log else (value - low) / (high - low))
         return np.array(out)
+
+
+def _keys(part: str) -> list[str]:
+    """The numbers that are searched where the noise has a part."""
+    return [p.key for p in parameters_of(part)]
+
+
+def _of_group(values: dict[str, float], group: str) -> dict[str, Any]:
+    """The numbers of one group of a detail, by their names there."""
+    return {name.removeprefix(f"{group}."): value for name, value in values.items() if name.startswith(f"{group}.")}

@@ -54,6 +54,10 @@ _Entry = Annotated[float, Field(ge=-1e6, le=1e6)]
 _PLAIN: dict[str, type] = {"int": int, "str": str, "bool": bool}  # NumPy's own kinds of number are not JSON
 
 
+_IN_FILE = {"bordered": "grains"}
+"""Fields of a Kind that the file has by another name, their first one."""
+
+
 class _CandidateRecord(Record):
     kind: dict[str, bool | int | str]
     vector: Annotated[tuple[_Unit, ...], Field(max_length=MOST_NUMBERS)]
@@ -92,7 +96,7 @@ def save_state(path: Path, state: State, setup: Setup, photo_sha256: str) -> Non
     """
     pool = [
         {
-            "kind": {f.name: _PLAIN[str(f.type)](getattr(c.kind, f.name)) for f in fields(Kind)},
+            "kind": {_IN_FILE.get(f.name, f.name): _PLAIN[str(f.type)](getattr(c.kind, f.name)) for f in fields(Kind)},
             "vector": np.asarray(c.vector, dtype=float).tolist(),
             "value": float(c.value) if math.isfinite(c.value) else None,
             "spread": float(c.spread),
@@ -154,24 +158,24 @@ def _belongs(setup: Setup, photo_sha256: str) -> dict[str, Any]:
     }
 
 
-def _refuse_other(found: _Belongs, setup: Setup, photo_sha256: str, where: str) -> None:
+def _refuse_other(belongs: _Belongs, setup: Setup, photo_sha256: str, where: str) -> None:
     """Say what differs between the inputs of a state and the present ones."""
     wanted = _belongs(setup, photo_sha256)
     end = "; give the same as then, or start again without --resume."
     for name in ("photo", "mask", "mesh"):
-        if getattr(found, name) != wanted[name]:
+        if getattr(belongs, name) != wanted[name]:
             raise InputError(f"{where} belongs to a fit with another {name}{end}")
     # Through JSON, where a tuple is a list.
-    then, now = _flat(found.setup), _flat(json.loads(json.dumps(wanted["setup"])))
+    then, now = _flat(belongs.setup), _flat(json.loads(json.dumps(wanted["setup"])))
     for key in sorted(then.keys() | now.keys()):
         if then.get(key) != now.get(key):
             raise InputError(
                 f"{where} belongs to a fit with {printable(key)} = {shown(then.get(key))}, and now it is"
                 f" {shown(now.get(key))}{end}"
             )
-    if found.voldetail != wanted["voldetail"]:
+    if belongs.voldetail != wanted["voldetail"]:
         raise InputError(
-            f"{where} was written by voldetail {printable(found.voldetail)[:20]}, and the search of this"
+            f"{where} was written by voldetail {printable(belongs.voldetail)[:20]}, and the search of this"
             f" {__version__} may differ; start again without --resume."
         )
 
@@ -185,12 +189,13 @@ def _flat(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
 
 def _candidate(record: _CandidateRecord, setup: Setup, where: str) -> Candidate:
     # Strings, since annotations are not evaluated; "bool" is no "int" here.
-    types = {field.name: field.type for field in fields(Kind)}
+    names = {_IN_FILE.get(field.name, field.name): field for field in fields(Kind)}
+    types = {name: field.type for name, field in names.items()}
     vector = np.array(record.vector, dtype=np.float64)
     try:
         if {name: type(value).__name__ for name, value in record.kind.items()} != types:
             raise ValueError(record.kind)
-        kind = Kind(**record.kind)  # type: ignore[arg-type]
+        kind = Kind(**{names[name].name: value for name, value in record.kind.items()})  # type: ignore[arg-type]
         if kind.fold not in FOLDS:
             raise ValueError(kind.fold)
         # A detail that can be made is one that can be searched. The bounds do not matter here, only that no

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,16 +11,18 @@ from scipy.ndimage import gaussian_filter
 from voldetail.errors import InputError
 from voldetail.fit.evenness import evened, unevenness
 from voldetail.fit.zone import around, check_zone, default_zone
-from voldetail.image import Photo, load_mask, load_photo, luminance, resize, resize_mask
-from voldetail.metric import Descriptor, describe, distance
+from voldetail.image import Photo, as_photo, luminance, resize, resize_mask, used_of, with_mask
+from voldetail.metric import describe, distance
 from voldetail.render.build import faces_camera
-from voldetail.setup.lamp import Lamp, lamp_of
-from voldetail.setup.setup import SKIMAGE_PREFIX, Setup
+from voldetail.results.target import Target
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.light import lamp_of
+from voldetail.setup.setup import Setup
 from voldetail.setup.view import View, Zone, view_of
 
 SLOW_SHADING = 0.12
-"""Blur, in zone widths, that separates a near light's fall-off from the texture; tuned on the flash photographs of
-../shared/data, where the main wavelength is a tenth of this."""
+"""Blur, in zone widths, that separates a near light's fall-off from the texture; tuned on the flash photographs, where the main
+wavelength is a tenth of this."""
 
 REACH = 3.0
 """How many times the zone's side the part of the photo is long that an even picture of the zone is made of."""
@@ -30,56 +31,25 @@ BLACK = 1e-6
 """Mean luminance of a photo below which it has no colour; a hundredth of the darkest 8-bit value but black."""
 
 
-@dataclass(frozen=True)
-class Target:
-    """What a rendering is compared with.
-
-    white: the luminance at which the photo burns out; renderings are clipped there, as the camera did.
-    pixels (H, W, 3) and luminance (H, W): the zone, linear, at working resolution. mask (H, W). shape: rows and columns
-    of the whole photo; zone in its pixels. photo_halves: distance between the two halves of the zone. unevenness: of the photo
-    (fit.evenness), before anything was evened; None where it means nothing.
-    """
-
-    photo: Photo
-    pixels: NDArray[np.float32]
-    luminance: NDArray[np.float32]
-    mask: NDArray[np.bool_]
-    shape: tuple[int, int]
-    zone: Zone
-    lamp: Lamp
-    tint: tuple[float, float, float]
-    descriptor: Descriptor
-    photo_halves: float | None
-    white: float
-    unevenness: float | None = None
-
-    def reduced(self, metric: str, size: tuple[int, int]) -> Target:
-        """Return the same target at fewer pixels (rows, columns), for the coarse pass."""
-        pixels = resize(self.pixels, size)
-        light = luminance(pixels)
-        mask = resize_mask(self.mask, size)
-        return Target(
-            self.photo, pixels, light, mask, self.shape, self.zone, self.lamp, self.tint,
-            describe(light, mask, metric=metric), None, self.white,
-        )
+def reduced(target: Target, metric: str, size: tuple[int, int]) -> Target:
+    """Return the same target at fewer pixels (rows, columns), for the coarse pass."""
+    pixels = resize(target.pixels, size)
+    light = luminance(pixels)
+    mask = resize_mask(target.mask, size)
+    return replace(
+        target, pixels=pixels, luminance=light, mask=mask, descriptor=describe(light, mask, metric=metric),
+        photo_halves=None, unevenness=None,
+    )  # fmt: skip
 
 
 def load_photo_of(setup: Setup) -> Photo:
     """Return the photo of a Setup: a file, or one that scikit-image ships."""
-    path = setup.photo.path
-    if path.startswith(SKIMAGE_PREFIX):
-        import skimage
-
-        name = path.removeprefix(SKIMAGE_PREFIX)
-        return load_photo(Path(skimage.__file__).parent / "data" / f"{name}.png", encoding=setup.photo.encoding)
-    return load_photo(path, encoding=setup.photo.encoding)
+    return as_photo(setup.photo.path, encoding=setup.photo.encoding)
 
 
 def mask_of(setup: Setup, photo: Photo) -> NDArray[np.bool_]:
     """Return which pixels (H, W) of the whole photo are used: the mask's, where they are opaque."""
-    rows, columns = photo.pixels.shape[:2]
-    mask = load_mask(setup.mask, (rows, columns)) if setup.mask else np.ones((rows, columns), dtype=bool)
-    return mask if photo.opaque is None else mask & photo.opaque
+    return used_of(with_mask(photo, setup.mask))
 
 
 def make_target(setup: Setup, photo: Photo | None = None) -> Target:
@@ -92,37 +62,42 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
     mask = mask_of(setup, photo)
     zone = setup.photo.zone or default_zone(luminance(photo.pixels), mask, setup.photo.resolution)
     check_zone(zone, (rows, columns))
-    x, y, w, h = zone
-    factor = setup.photo.resolution / max(w, h)
-    size = (max(1, round(h * factor)), max(1, round(w * factor)))
-    pixels = resize(photo.pixels[y : y + h, x : x + w], size)
-    used = resize_mask(mask[y : y + h, x : x + w], size)
-    if not used.any():
+    factor = setup.photo.resolution / max(zone[2:])
+    pixels, inside = _cut(photo.pixels, mask, zone, factor)
+    size = (inside.shape[0], inside.shape[1])
+    if not inside.any():
         raise InputError("The mask leaves nothing of the zone to compare: use a larger mask or another --zone.")
     lamp = lamp_of(setup.light, luminance(photo.pixels))
-    if lamp.position is not None and faces_camera(setup):
+    if lamp.near and faces_camera(setup):
         view = view_of(setup.camera, (rows, columns), zone, setup.photo.resolution)
-        pixels = _with_falloff_of(lamp, pixels, used, view)
-    uneven = unevenness(pixels, used) if faces_camera(setup) and not setup.medium else None
+        pixels = _with_falloff_of(lamp, pixels, inside, view)
+    uneven = unevenness(pixels, inside) if faces_camera(setup) and not setup.medium else None
     if setup.photo.stationarize:
-        source, seen = pixels, used
-        if setup.photo.zone is None and lamp.position is None:
+        source, seen = pixels, inside
+        if setup.photo.zone is None and not lamp.near:
             # A zone that the user drew says what is meant; else there is more of the surface beside it.
-            x, y, w, h = around(zone, (rows, columns), REACH)
-            whole = (round(h * factor), round(w * factor))
-            source, seen = resize(photo.pixels[y : y + h, x : x + w], whole), resize_mask(mask[y : y + h, x : x + w], whole)
-        pixels, used = evened(source, seen, size, setup.seed), np.ones_like(used)
+            source, seen = _cut(photo.pixels, mask, around(zone, (rows, columns), REACH), factor)
+        pixels, inside = evened(source, seen, size, setup.seed), np.ones_like(inside)
     light = luminance(pixels)
-    mean = pixels[used].mean(axis=0).astype(np.float64)
+    mean = pixels[inside].mean(axis=0).astype(np.float64)
     brightness = float(luminance(mean[None, None, :].astype(np.float32))[0, 0])
     tint = mean / brightness if brightness > BLACK else np.ones(3)
-    descriptor = describe(light, used, metric=setup.fit.metric)
+    descriptor = describe(light, inside, metric=setup.fit.metric)
     return Target(
-        photo=photo, pixels=pixels, luminance=light, mask=used, shape=(rows, columns), zone=zone,
+        photo=photo, pixels=pixels, luminance=light, mask=inside, shape=(rows, columns), zone=zone,
         lamp=lamp, tint=(float(tint[0]), float(tint[1]), float(tint[2])),
-        descriptor=descriptor, photo_halves=halves_apart(light, used, setup.fit.metric),
+        descriptor=descriptor, photo_halves=halves_apart(light, inside, setup.fit.metric),
         white=max(1.0, float(light.max())), unevenness=uneven,
     )
+
+
+def _cut(
+    pixels: NDArray[np.float32], mask: NDArray[np.bool_], zone: Zone, factor: float
+) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+    """Return a part of the photo and of its mask, resized."""
+    x, y, w, h = zone
+    size = (max(1, round(h * factor)), max(1, round(w * factor)))
+    return resize(pixels[y : y + h, x : x + w], size), resize_mask(mask[y : y + h, x : x + w], size)
 
 
 def _with_falloff_of(

@@ -13,7 +13,7 @@ from voldetail.setup.view import Zone
 
 FEATURE_PIXELS = 12.0
 """Size in working pixels that the texture's main wavelength should have: enough to shape a bump by, and some sixteen of
-them across 192 pixels; tuned on the photographs of ../shared/data."""
+them across 192 pixels; tuned on photographs of rough surfaces."""
 
 SHADING_SHARE = 0.08
 """Blur, in photo widths, that is taken away as slow shading before the wavelength is measured."""

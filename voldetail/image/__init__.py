@@ -2,6 +2,7 @@
 
 from voldetail.image.load import MIN_SIDE, Photo, load_photo
 from voldetail.image.mask import load_mask
+from voldetail.image.photograph import MaskLike, PhotoLike, as_photo, load_masked, used_of, with_mask
 from voldetail.image.pyramid import gaussian_pyramid, masked_pyramid
 from voldetail.image.resize import resize, resize_mask
 from voldetail.image.samples import MAX_PIXELS
@@ -11,10 +12,14 @@ from voldetail.image.srgb import luminance, to_linear, to_srgb
 __all__ = [
     "MAX_PIXELS",
     "MIN_SIDE",
+    "MaskLike",
     "Photo",
+    "PhotoLike",
+    "as_photo",
     "check_suffix",
     "gaussian_pyramid",
     "load_mask",
+    "load_masked",
     "load_photo",
     "luminance",
     "masked_pyramid",
@@ -26,4 +31,6 @@ __all__ = [
     "save_png",
     "to_linear",
     "to_srgb",
+    "used_of",
+    "with_mask",
 ]

@@ -15,6 +15,7 @@ from voldetail.image.decode_exr import decode_exr
 from voldetail.image.decode_pillow import decode_pillow
 from voldetail.image.decode_tiff import MAGICS as TIFF_MAGICS
 from voldetail.image.decode_tiff import decode_float_tiff
+from voldetail.image.examples import picture_path
 from voldetail.image.samples import Samples, upright
 from voldetail.image.srgb import to_linear
 
@@ -44,12 +45,14 @@ class Photo:
 def load_photo(path: str | Path, *, encoding: Encoding = "auto") -> Photo:
     """Read a photograph: PNG, JPEG, TIFF, WebP, AVIF, BMP, PPM, GIF or OpenEXR, recognised by content.
 
+    `path` may also name one that scikit-image ships: "skimage:gravel", ":grass", ":brick".
+
     `encoding` says what the numbers mean: "srgb", "linear", or "auto", by which integers are sRGB and
     floating-point numbers linear. Grey becomes three equal channels, CMYK and palettes RGB; alpha is dropped
     and EXIF's rotation applied. Raises InputError for anything that is not a photograph of 32 x 32 pixels to
     100 megapixels.
     """
-    path = readable(path, "photo", MAX_BYTES)
+    path = readable(picture_path(path), "photo", MAX_BYTES)
     samples = _decode(path, "photo")
     height, width = samples.values.shape[:2]
     if min(height, width) < MIN_SIDE:

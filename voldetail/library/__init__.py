@@ -5,7 +5,7 @@ from voldetail.library.building.source import Source, StructureSource
 from voldetail.library.compare import Match, distance, nearest
 from voldetail.library.entries import Entries, entries, entry, grid_values, random_values
 from voldetail.library.groups import Group, Groups
-from voldetail.library.novelty import Familiarity, familiarity
+from voldetail.library.novelty import Novelty, novelty_of
 from voldetail.library.query import Query, query
 from voldetail.library.store import Library, open_library
 from voldetail.library.tables import Table, table
@@ -13,8 +13,38 @@ from voldetail.library.two_tone import TwoTone, recolour, two_tone
 from voldetail.library.vectors import published_w_global, swapped, turned, vector_of, weights
 
 __all__ = [
-    "Answer", "Entries", "Familiarity", "Group", "Groups", "Library", "Match", "Query", "Ranking", "Source", "StructureSource",
-    "Table", "TwoTone", "distance", "entries", "entry", "familiarity", "grid_values", "nearest", "open_library", "picture",
-    "published_w_global", "query", "random_values", "rank", "recolour", "structure_map", "swapped", "table", "texture_of",
-    "turned", "two_tone", "vector_of", "weights",
+    "Answer",
+    "Entries",
+    "Group",
+    "Groups",
+    "Library",
+    "Match",
+    "Novelty",
+    "Query",
+    "Ranking",
+    "Source",
+    "StructureSource",
+    "Table",
+    "TwoTone",
+    "distance",
+    "entries",
+    "entry",
+    "grid_values",
+    "nearest",
+    "novelty_of",
+    "open_library",
+    "picture",
+    "published_w_global",
+    "query",
+    "random_values",
+    "rank",
+    "recolour",
+    "structure_map",
+    "swapped",
+    "table",
+    "texture_of",
+    "turned",
+    "two_tone",
+    "vector_of",
+    "weights",
 ]  # fmt: skip

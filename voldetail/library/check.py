@@ -48,7 +48,7 @@ def check(library: Library, on_entries: Callable[[int], None] = lambda entries: 
 def _values_and_vectors(library: Library, name: str) -> tuple[Any, Any]:
     if name in library.groups:
         return library.groups[name].values, library.groups[name].table.vectors
-    return library.series[name].values, library.series[name].rows
+    return library.series[name].values, library.series[name].vectors
 
 
 def _check_worked_out(group: Group, here: slice, vectors: NDArray[np.float32], where: str) -> None:

@@ -130,15 +130,15 @@ class _Question:
 
     def bounds(self) -> Array:
         """What D^2 of each entry is at least, (N,)."""
-        found = []
+        lower_bounds = []
         for outlines in pieces_of(self.table.outlines):
             of_orders = np.empty((len(self.orders), outlines.shape[1]), np.float32)
             for first in range(0, outlines.shape[1], COLUMNS):
                 here = slice(first, first + COLUMNS)
                 np.matmul(self.short_products, outlines[:, here], out=of_orders[:, here])
             of_orders += self.short_constants[:, None]
-            found.append(self._lightness(outlines[0], outlines[1], of_orders))
-        return found[0] if len(found) == 1 else np.concatenate(found)
+            lower_bounds.append(self._lightness(outlines[0], outlines[1], of_orders))
+        return lower_bounds[0] if len(lower_bounds) == 1 else np.concatenate(lower_bounds)
 
     def squares(self, entries: NDArray[np.intp]) -> Array:
         """D^2 of some entries in their best turn and order."""

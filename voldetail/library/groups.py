@@ -36,7 +36,7 @@ Groups = Mapping[str, Group]
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """Reliefs under one light: its name, the names of their numbers, values (N, numbers), rows (N, L) of `metric.rows`.
+    """Reliefs under one light: its name, the names of their numbers, values (N, numbers), vectors (N, L) of `metric.vector`.
 
     seed: of all that is random in them. definition: what else decides them, as their source says.
     """
@@ -44,6 +44,6 @@ class Series:
     name: str
     keys: tuple[str, ...]
     values: NDArray[np.float64] | Rows[np.float64]
-    rows: NDArray[np.float16] | Rows[np.float16]
+    vectors: NDArray[np.float16] | Rows[np.float16]
     seed: int
     definition: Mapping[str, Any]

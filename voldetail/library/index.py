@@ -135,7 +135,7 @@ def open_index(library: Library) -> dict[str, Index]:
         raise InputError(f"The index {path} is none, or of another version; {again}.")
     if head.get("library") != library.header.sha256:
         raise InputError(f"The index {path} belongs to another library; {again}.")
-    at, found = HEAD, {}
+    at, indexes = HEAD, {}
     for name, group in library.groups.items():
         count = len(group.values)
         cells = _cells(count)
@@ -149,10 +149,10 @@ def open_index(library: Library) -> dict[str, Index]:
             at += length
         if np.any(np.diff(parts[1], prepend=0) < 0) or parts[1][-1] != count:
             raise InputError(f"The index {path} is damaged; {again}.")
-        found[name] = Index(group.table.weights[outlined()], *parts)
+        indexes[name] = Index(group.table.weights[outlined()], *parts)
     if at != size:
         raise InputError(f"The index {path} has {size} bytes where {at} are needed; {again}.")
-    return found
+    return indexes
 
 
 def _cells(count: int) -> int:

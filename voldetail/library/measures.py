@@ -1,7 +1,7 @@
 """What an entry's picture is described with, of which there are two: one measure for all entries of a library.
 
     structures   the vector of GKHF14 section 4, see `vectors`: two-tone maps, compared in any turn
-    reliefs      the project's own metric, see `metric.rows`: pictures of reliefs under one light
+    reliefs      the project's own metric, see `metric.vector`: pictures of reliefs under one light
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ MeasureName = Literal["structures", "reliefs"]
 class Measure:
     """A way of describing pictures.
 
-    length: numbers of a row. kind: of number they are kept as. definition: all that decides them, as JSON has it. outlined:
-    whether norms and outlines are kept beside the rows (see `tables`), which queries need that turn the picture.
+    length: numbers of a vector. kind: of number they are kept as. definition: all that decides them, as JSON has it. outlined:
+    whether norms and outlines are kept beside the vectors (see `tables`), which queries need that turn the picture.
     """
 
     name: MeasureName
@@ -33,7 +33,7 @@ class Measure:
 
 MEASURES: dict[str, Measure] = {
     "structures": Measure("structures", lambda: vectors.LENGTH, "float32", vectors.definition, True),
-    # Half precision changes a distance by a thousandth at most (tests/unit/test_metric_rows.py).
-    "reliefs": Measure("reliefs", vector.row_length, "float16", vector.definition, False),
+    # Half precision changes a distance by a thousandth at most (tests/unit/test_metric_vector.py).
+    "reliefs": Measure("reliefs", vector.vector_length, "float16", vector.definition, False),
 }
 """The measures by name."""

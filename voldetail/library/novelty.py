@@ -1,4 +1,4 @@
-"""Whether a library knows anything like a photo.
+"""Whether a photo is new to a library, which has nothing like it.
 
 D has no unit that says so: how near the nearest entry of a picture is that a model could have made depends on how many parameters
 the model has and on how many entries. So pictures of the answer's model are made of which none is in the library, with numbers
@@ -26,7 +26,7 @@ OWN_SEED = 0x6B6E6F77
 
 
 @dataclass(frozen=True)
-class Familiarity:
+class Novelty:
     """How far an answer is beside pictures of its model: its distance D, and the largest of theirs."""
 
     model: str
@@ -34,14 +34,14 @@ class Familiarity:
     farthest: float
 
     @property
-    def known(self) -> bool:
-        """Whether a picture of the model could be as far."""
-        return self.distance <= self.farthest
+    def novel(self) -> bool:
+        """Whether no other picture of the model is as far."""
+        return self.distance > self.farthest
 
     @property
     def sentence(self) -> str:
         """Empty, or one sentence that nothing in the library is like the photo."""
-        if self.known:
+        if not self.novel:
             return ""
         return (
             f"The library has nothing quite like this photo: the nearest answer, {self.model}, is {self.distance:.3f} away, and "
@@ -49,9 +49,9 @@ class Familiarity:
         )
 
 
-def familiarity(
+def novelty_of(
     group: Group, answer: Answer, *, rotations: bool = True, swap: bool = True, side: int = SIDE
-) -> Familiarity | None:
+) -> Novelty | None:
     """Return how far ``answer`` is beside ``PICTURES`` random pictures, of ``side`` pixels, of its model.
 
     None for entries that are of no structure model. About a second.
@@ -59,9 +59,9 @@ def familiarity(
     model = MODELS.get(answer.model)
     if model is None:
         return None
-    found = []
+    distances = []
     for k in range(PICTURES):
         s = structure(model, random_values(model, k, OWN_SEED), side, seed=OWN_SEED)
         vector = vector_of(spanned(s, span_of(s)))
-        found.append(nearest(group.table, vector, 1, rotations=rotations, swap=swap)[0].distance)
-    return Familiarity(answer.model, answer.distance, max(found))
+        distances.append(nearest(group.table, vector, 1, rotations=rotations, swap=swap)[0].distance)
+    return Novelty(answer.model, answer.distance, max(distances))

@@ -40,18 +40,18 @@ class Rows(Generic[Kind]):
             raise IndexError(f"rows {chosen.min()} to {chosen.max()} of {len(self)} are asked for")
         if chosen.ndim == 0:
             return np.array(self.piece(int(chosen) // self.step)[int(chosen) % self.step])
-        found = np.empty((len(chosen), self.shape[1]), self.dtype)
+        values = np.empty((len(chosen), self.shape[1]), self.dtype)
         if (np.diff(chosen) < 0).any():
             order = np.argsort(chosen, kind="stable")
-            found[order] = self[chosen[order]]
-            return found
+            values[order] = self[chosen[order]]
+            return values
         first = 0
         while first < len(chosen):
             k = int(chosen[first]) // self.step
             last = int(np.searchsorted(chosen, (k + 1) * self.step))
-            np.take(self.piece(k), chosen[first:last] - k * self.step, axis=0, out=found[first:last], mode="clip")
+            np.take(self.piece(k), chosen[first:last] - k * self.step, axis=0, out=values[first:last], mode="clip")
             first = last
-        return found
+        return values
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
         return self[:] if dtype is None else self[:].astype(dtype)

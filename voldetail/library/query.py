@@ -17,7 +17,6 @@ from voldetail.library.entries import SIDE
 from voldetail.library.span import TRIM
 from voldetail.library.two_tone import TwoTone, two_tone
 from voldetail.library.vectors import SMALLEST_SIDE, vector_of
-from voldetail.metric.gabor import REACH, SIGMAS
 from voldetail.texture.analysis import pixels_of
 
 Array = NDArray[np.float32]
@@ -25,9 +24,6 @@ Zone = tuple[int, int, int, int]
 
 LARGEST_SIDE = 2048
 """Pixels of a photo that is described: seconds and some hundred MB."""
-
-ALL_SCALES_SIDE = int(np.ceil(2 * REACH * SIGMAS[-1]))
-"""Pixels of the smallest side on which the coarsest filters fit, 101."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,23 +54,23 @@ def query(
     whatever `two_tone` and `vector_of` refuse.
     """
     pixels = pixels_of(photo)
-    used = np.ones(pixels.shape[:2], bool) if mask is None else np.asarray(mask).astype(bool)
-    if used.shape != pixels.shape[:2]:
-        raise InputError(f"The mask has the shape {used.shape} and the photo {pixels.shape[:2]}; give one of its size.")
+    inside = np.ones(pixels.shape[:2], bool) if mask is None else np.asarray(mask).astype(bool)
+    if inside.shape != pixels.shape[:2]:
+        raise InputError(f"The mask has the shape {inside.shape} and the photo {pixels.shape[:2]}; give one of its size.")
     if zone is not None:
         x, y, width, height = zone
         rows, columns = pixels.shape[:2]
         if min(x, y) < 0 or min(width, height) < 1 or x + width > columns or y + height > rows:
             raise InputError(f"The zone {x},{y},{width},{height} reaches outside the photo of {columns} x {rows} pixels.")
-        pixels, used = pixels[y : y + height, x : x + width], used[y : y + height, x : x + width]
-    factor = min(1.0, SIDE / max(used.shape)) if scale is None else scale
-    size = _size(used.shape, factor)
-    if size != used.shape:
-        pixels, used = resize(_filled(pixels, used), size), resize_mask(used, size)
-    tones = two_tone(pixels, used, trim=trim)
-    vector = vector_of(tones.structure, None if used.all() else used)
+        pixels, inside = pixels[y : y + height, x : x + width], inside[y : y + height, x : x + width]
+    factor = min(1.0, SIDE / max(inside.shape)) if scale is None else scale
+    size = _size(inside.shape, factor)
+    if size != inside.shape:
+        pixels, inside = resize(_filled(pixels, inside), size), resize_mask(inside, size)
+    tones = two_tone(pixels, inside, trim=trim)
+    vector = vector_of(tones.structure, None if inside.all() else inside)
     missing = int(np.isnan(vector[2:8]).sum())
-    return Query(np.ascontiguousarray(pixels), used, tones, vector, factor, missing)
+    return Query(np.ascontiguousarray(pixels), inside, tones, vector, factor, missing)
 
 
 def _size(shape: tuple[int, ...], factor: float) -> tuple[int, int]:

@@ -122,14 +122,14 @@ def read_header(path: str | Path) -> Header:
         raise InputError(f"{where} does not exist; check the path, or build it with voldetail library build.")
     if not path.is_dir() or not (path / "zarr.json").exists():
         raise InputError(f"{where} is no library: it has to be a folder with zarr.json in it, as voldetail library build makes.")
-    found = _attributes(path, where)
-    if found.get("format") != FORMAT:
-        raise InputError(f'{where} is no library: its "format" is {shown(found.get("format"))}, not "{FORMAT}".')
-    if found.get("version") != FORMAT_VERSION:
+    header = _attributes(path, where)
+    if header.get("format") != FORMAT:
+        raise InputError(f'{where} is no library: its "format" is {shown(header.get("format"))}, not "{FORMAT}".')
+    if header.get("version") != FORMAT_VERSION:
         raise InputError(
-            f"{where} has version {shown(found.get('version'))}, and this voldetail reads {FORMAT_VERSION}; build it again."
+            f"{where} has version {shown(header.get('version'))}, and this voldetail reads {FORMAT_VERSION}; build it again."
         )
-    record = _checked(LibraryRecord, found, where)
+    record = _checked(LibraryRecord, header, where)
     if len(set(record.sources)) < len(record.sources):
         raise InputError(f"{where} names a source twice; build it again.")
     sources = {}
@@ -160,8 +160,8 @@ def _group(folder: Path, name: str, record: SourceRecord, w: NDArray[np.float64]
 
 def _series(folder: Path, name: str, record: SourceRecord) -> Series:
     arrays = arrays_of(record.entries, len(record.keys), "reliefs")
-    values, rows = _rows(folder, arrays["values"], np.float64), _rows(folder, arrays["vectors"], np.float16)
-    return Series(name, tuple(record.keys), values, rows, record.seed, record.definition)
+    values, vectors = _rows(folder, arrays["values"], np.float64), _rows(folder, arrays["vectors"], np.float16)
+    return Series(name, tuple(record.keys), values, vectors, record.seed, record.definition)
 
 
 def _rows(folder: Path, array: ArrayLayout, kind: Any) -> Rows[Any]:
@@ -238,13 +238,13 @@ def _check_array(folder: Path, array: ArrayLayout, where: str) -> None:
 def _must_be(path: Path, *, folder: bool, size: int | None, where: str) -> int:
     """Return a file's size. Raises InputError for one that is missing, a link, of another kind or of another size."""
     try:
-        found = path.lstat()
+        status = path.lstat()
     except OSError as error:
         raise InputError(f"{where} is incomplete: {path}: {error.strerror}; copy it again or build it again.") from None
-    if not (stat.S_ISDIR if folder else stat.S_ISREG)(found.st_mode):
+    if not (stat.S_ISDIR if folder else stat.S_ISREG)(status.st_mode):
         raise InputError(f"{where} is damaged: {path} is no {'folder' if folder else 'regular file'}; build it again.")
-    if size is not None and found.st_size != size:
+    if size is not None and status.st_size != size:
         raise InputError(
-            f"{where} is damaged: {path} has {found.st_size} bytes where {size} are needed; copy it again or build it again."
+            f"{where} is damaged: {path} has {status.st_size} bytes where {size} are needed; copy it again or build it again."
         )
-    return found.st_size
+    return status.st_size

@@ -63,9 +63,9 @@ def two_tone(photo: ArrayLike, mask: ArrayLike | None = None, *, trim: float = 0
     (H, W). What is outside 0 to 1 is clipped. Raises InputError for other shapes, a photo of one colour, values inside the
     mask that are not finite, a mask of another size or of under 64 pixels, and a trim that is not from 0 to 0.4.
     """
-    pixels, used = _checked(photo, mask, trim)
-    encoded = to_srgb(np.clip(np.where(used[..., None], pixels, np.float32(0.0)), 0.0, 1.0))
-    colours = encoded[used]
+    pixels, inside = _checked(photo, mask, trim)
+    encoded = to_srgb(np.clip(np.where(inside[..., None], pixels, np.float32(0.0)), 0.0, 1.0))
+    colours = encoded[inside]
     axis = principal_axes(colours)[0]
     mean = colours.mean(axis=0, dtype=np.float64)
     places = (colours - mean) @ axis
@@ -77,11 +77,11 @@ def two_tone(photo: ArrayLike, mask: ArrayLike | None = None, *, trim: float = 0
         raise InputError("Hardly a pixel of the photo differs from the others; trim less, or give one with two tones.")
     first, second = _within_cube(ends, mean, axis)
     tones = np.clip(np.stack([mean + first * axis, mean + second * axis]), 0.0, 1.0)
-    structure = np.zeros(used.shape, np.float32)
-    structure[used] = np.clip((places - first) / (second - first), 0.0, 1.0)
+    structure = np.zeros(inside.shape, np.float32)
+    structure[inside] = np.clip((places - first) / (second - first), 0.0, 1.0)
     if not _in_order(tones):
         tones = tones[::-1]
-        structure[used] = 1.0 - structure[used]
+        structure[inside] = 1.0 - structure[inside]
     explained = min(float(places.var()) / variance, 1.0)
     dark, bright = np.asarray(tones, np.float32)
     return TwoTone(structure, dark, bright, explained, _poor(explained))
@@ -127,14 +127,14 @@ def _poor(explained: float) -> str:
 
 def _checked(photo: ArrayLike, mask: ArrayLike | None, trim: float) -> tuple[Array, Mask]:
     pixels = pixels_of(photo)
-    used = np.ones(pixels.shape[:2], bool) if mask is None else np.asarray(mask).astype(bool)
-    if used.shape != pixels.shape[:2]:
-        raise InputError(f"The mask has the shape {used.shape} and the photo {pixels.shape[:2]}; give one of its size.")
-    count = int(np.count_nonzero(used))
+    inside = np.ones(pixels.shape[:2], bool) if mask is None else np.asarray(mask).astype(bool)
+    if inside.shape != pixels.shape[:2]:
+        raise InputError(f"The mask has the shape {inside.shape} and the photo {pixels.shape[:2]}; give one of its size.")
+    count = int(np.count_nonzero(inside))
     if count < FEWEST_PIXELS:
         raise InputError(f"There are {count} pixels to read tones from; at least {FEWEST_PIXELS} are needed.")
-    if not np.isfinite(pixels[used]).all():
+    if not np.isfinite(pixels[inside]).all():
         raise InputError("The photo has pixels that are NaN or infinite; repair them or leave them out with a mask.")
     if not 0.0 <= trim <= 0.4:
         raise InputError(f"The trim is {trim:g}; a share from 0 to 0.4 is allowed.")
-    return pixels, used
+    return pixels, inside

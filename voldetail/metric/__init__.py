@@ -1,5 +1,5 @@
 """How alike two texture pictures are."""
 
-from voldetail.metric.descriptor import METRICS, Descriptor, describe, distance, distance_by_level
+from voldetail.metric.descriptor import METRICS, Descriptor, describe, distance, distance_by_level, metric_named
 
-__all__ = ["METRICS", "Descriptor", "describe", "distance", "distance_by_level"]
+__all__ = ["METRICS", "Descriptor", "describe", "distance", "distance_by_level", "metric_named"]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,9 @@ from voldetail.metric.layers import Layers, Mask, layers
 
 METRICS: tuple[str, ...] = ("combined", *INGREDIENTS)
 """Names of the metrics; "published" is GD10's own."""
+
+FORMER_NAMES: Mapping[str, str] = MappingProxyType({"swells": "low-pass", "lean": "gradient-skew"})
+"""What metrics were called before, by which they are still known."""
 
 _Key = tuple[str, str]
 
@@ -30,6 +34,14 @@ class Descriptor:
     basis: Mapping[str, Parts]
     features: Mapping[str, Parts]
     floors: Mapping[_Key, float]
+
+
+def metric_named(name: str) -> str:
+    """Return the one of METRICS that is called ``name``, or was; raises InputError for another."""
+    metric = FORMER_NAMES.get(name, name)
+    if metric not in METRICS:
+        raise InputError(f"There is no metric {name!r}; use one of {', '.join(METRICS)}.")
+    return metric
 
 
 def describe(
@@ -50,8 +62,7 @@ def describe(
     picture = layers(luminance, mask)
     if like is not None:
         return describe_layers(picture, like)
-    if metric not in METRICS:
-        raise InputError(f"there is no metric {metric!r}: choose one of {', '.join(METRICS)}")
+    metric = metric_named(metric)
     names = tuple(COMBINED) if metric == "combined" else (metric,)
     basis = {name: INGREDIENTS[name].basis(picture) for name in names}
     reference = describe_layers(picture, Descriptor(metric, basis, {}, {}))
@@ -85,7 +96,7 @@ def distance_by_level(a: Descriptor, b: Descriptor) -> dict[str, float]:
             "like= the first one's descriptor"
         )
     if a.metric != "combined":
-        return {part: found for (_, part), found in _compared(a, b, a.basis).items()}
+        return {part: apart for (_, part), apart in _compared(a, b, a.basis).items()}
     parts = _compared(a, b, a.basis)
     return {
         f"{name}: {part}": weight * parts[name, part] / a.floors[name, part]
@@ -100,9 +111,9 @@ def _raw_parts(a: Layers, b: Layers, like: Descriptor) -> dict[_Key, float]:
 
 def _compared(a: Descriptor, b: Descriptor, basis: Mapping[str, Parts]) -> dict[_Key, float]:
     return {
-        (name, part): INGREDIENTS[name].compare(found, b.features[name][part], basis[name].get(part))
+        (name, part): float(INGREDIENTS[name].apart(statistic, b.features[name][part], basis[name].get(part)))
         for name, parts in a.features.items()
-        for part, found in parts.items()
+        for part, statistic in parts.items()
     }
 
 

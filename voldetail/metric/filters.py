@@ -100,7 +100,7 @@ def responses(image: Array, stride: int = 1) -> Array:
     across = _along_rows(np.ascontiguousarray(image.T), all_u, stride)  # (7, blocks, block, H)
     across = across.reshape(7, -1, image.shape[0])[:, :width].transpose(2, 0, 1)
     across = np.ascontiguousarray(across).reshape(image.shape[0], 7 * width)
-    found: dict[tuple[int, int], Array] = {}
+    amplitudes: dict[tuple[int, int], Array] = {}
     for u, vs in _PAIRED_WITH.items():
         columns = slice(0, width) if u == 0 else slice((2 * u - 1) * width, (2 * u + 1) * width)
         parts = _along_rows(across[:, columns], vs, stride)
@@ -108,11 +108,11 @@ def responses(image: Array, stride: int = 1) -> Array:
         for v in vs:
             cosine, sine = parts[k], (parts[k + 1] if v else None)
             k += 2 if v else 1
-            found.update(_amplitudes(u, v, cosine, sine, width))
-    out = np.empty((len(FREQUENCIES), *next(iter(found.values())).shape), np.float32)
+            amplitudes.update(_amplitudes(u, v, cosine, sine, width))
+    out = np.empty((len(FREQUENCIES), *next(iter(amplitudes.values())).shape), np.float32)
     for index, (u, v) in enumerate(FREQUENCIES):
         key = (u, v) if u >= 0 else (-u, -v)  # conjugate for a real image: same amplitude
-        np.sqrt(found[key], out=out[index])
+        np.sqrt(amplitudes[key], out=out[index])
     return out.reshape(len(FREQUENCIES), -1, width)[:, :height]
 
 

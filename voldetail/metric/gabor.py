@@ -86,11 +86,11 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
     return found
 
 
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
+def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
     """Sum of w_i^2 d_i^2 of equation 6, d_i^2 = (mean - mean')^2 + (deviation - deviation')^2 the squared 2-Wasserstein
     distance of two Gaussians (Dowson & Landau 1982). The root over the sum of all parts is left out, as in the paper."""
-    gaps = np.nan_to_num(np.sum((a - b) ** 2, axis=0, keepdims=True))
-    return float(np.sum(gaps if basis is None else gaps * basis**2))
+    gaps = np.nan_to_num(np.sum((a - b) ** 2, axis=-2, keepdims=True))
+    return np.asarray(np.sum(gaps if basis is None else gaps * basis**2, axis=(-2, -1)))
 
 
 @lru_cache
@@ -166,7 +166,7 @@ def _filters(shape: tuple[int, int], scale: int, frequency: float) -> tuple[tupl
     f = frequency / sigma
     sizes = [_size(n, 2 * PASSED / sigma) for n in shape]
     bias = np.exp(-2 * np.pi**2 * frequency**2) if frequency else 0.0
-    found = []
+    filters = []
     for angle in np.arange(ORIENTATIONS if frequency else 1) * np.pi / ORIENTATIONS:
         # Rows run downwards, angles counter-clockwise.
         wave = (-f * np.sin(angle), f * np.cos(angle))
@@ -174,9 +174,9 @@ def _filters(shape: tuple[int, int], scale: int, frequency: float) -> tuple[tupl
         y, x = ((k + np.arange(m)) / n for k, m, n in zip(first, sizes, shape, strict=True))
         transfer = _window(sigma, y - wave[0], x - wave[1]) - bias * _window(sigma, y, x)
         scaled = np.asarray(transfer / _integral(frequency), np.float32)
-        found.append((first[0] % shape[0], first[1] % shape[1], scaled))
+        filters.append((first[0] % shape[0], first[1] % shape[1], scaled))
     rows, columns = ((np.arange(m) * n) // m for n, m in zip(shape, sizes, strict=True))
-    return tuple(found), rows, columns
+    return tuple(filters), rows, columns
 
 
 def _window(sigma: float, y: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""Which way relief leans under its light: the lopsided part of brightness differences, by direction and distance.
+"""Skew of the gradient, which tells from where relief is lit: the lopsided part of brightness differences by direction.
 
 Relief lit from one side is not the same upside down: slopes that face the light are broad and bright, those that turn away
 short and dark, and shadows end sharply on one side. Spectra, correlations of magnitudes, local patterns and openings are
@@ -26,19 +26,19 @@ def basis(layers: Layers, /) -> Parts:
 def measure(layers: Layers, basis: Parts, /) -> Parts:
     """(Q(p) + Q(1 - p)) / 2 of each level, (4, 32): Q the quantile function of the differences at a lag in their own
     deviations. It is 0 where they are distributed alike up and down, and turns its sign with the picture."""
-    found: dict[str, Array] = {}
+    skews: dict[str, Array] = {}
     for level, (name, image) in enumerate(zip(LEVEL_NAMES, layers.images, strict=True)):
         stride = 1 if level == len(LEVEL_NAMES) - 1 else 2  # neighbours say nearly the same
         gaps = np.stack([_gap(image, rows // 2, columns // 2)[::stride, ::stride] for rows, columns in LAGS])
         functions = quantile_functions(layers.pick(gaps, level, SUPPORT, stride))
         shape = functions / spread(functions)
-        found[name] = (shape + shape[:, ::-1]) * np.float32(0.5)
-    return found
+        skews[name] = (shape + shape[:, ::-1]) * np.float32(0.5)
+    return skews
 
 
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
+def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
     """Mean absolute difference over quantiles and lags."""
-    return float(np.mean(np.abs(a - b)))
+    return np.asarray(np.mean(np.abs(a - b), axis=(-2, -1)))
 
 
 def _gap(image: Array, rows: int, columns: int) -> Array:

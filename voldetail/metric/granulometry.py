@@ -31,17 +31,17 @@ def basis(layers: Layers, /) -> Parts:
 
 def measure(layers: Layers, basis: Parts, /) -> Parts:
     """Quantile functions (radii, 32) of what openings and closings take away at each level."""
-    found: dict[str, Array] = {}
+    spots: dict[str, Array] = {}
     for level, (name, image) in enumerate(zip(LEVEL_NAMES, layers.images, strict=True)):
         radii = COARSEST_RADII if level == len(LEVEL_NAMES) - 1 else RADII
         for kind, sign in KINDS:
-            found[f"{kind} {name}"] = np.concatenate(
+            spots[f"{kind} {name}"] = np.concatenate(
                 [quantile_functions(_residue(layers, level, sign * image, radius)) for radius in radii]
             )
-    return found
+    return spots
 
 
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
+def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
     """1-Wasserstein distance, mean over radii, in the reference's standard deviations."""
     return wasserstein(a, b, basis)
 

@@ -65,12 +65,34 @@ class Layers:
         return values[:, allowed[::stride, ::stride]]
 
 
+SMALLEST = WINDOW << (LEVELS - 1)
+"""Pixels a side of the smallest picture that has a window at every level."""
+
+
 def layers(luminance: NDArray[np.floating], mask: Mask | None = None) -> Layers:
     """Check a picture and build its pyramid.
 
     `luminance` is (H, W), linear, finite and not negative beyond rounding; `mask` (H, W) bool, True = use.
     Raises InputError when a shape or value is wrong or when a level has no window inside the mask.
     """
+    image, use = _checked(luminance, mask)
+    encoded = to_srgb(np.maximum(image, 0).astype(np.float32, copy=False))
+    images = tuple(np.ascontiguousarray(level, np.float32) for level in gaussian_pyramid(encoded, LEVELS))
+    if use is None or use.all():
+        return Layers(images, (None,) * LEVELS)
+    masks = tuple(np.asarray(level, bool) for level in masked_pyramid(use, LEVELS))
+    for level, level_mask in enumerate(masks):
+        if not inside(level_mask, WINDOW).any():
+            raise InputError(
+                f"the mask is smaller than the metric's filters: no {WINDOW} x {WINDOW} window of pyramid level "
+                f"{level} lies wholly inside it; paint a zone of at least about "
+                f"{2 * SMALLEST} x {2 * SMALLEST} pixels"
+            )
+    return Layers(images, masks)
+
+
+def _checked(luminance: NDArray[np.floating], mask: Mask | None) -> tuple[NDArray[np.floating], Mask | None]:
+    """The picture, 0 where it is not finite, and its mask; refused where the filters cannot use them."""
     image = np.asarray(luminance)
     if image.ndim != 2:
         raise InputError(
@@ -88,22 +110,9 @@ def layers(luminance: NDArray[np.floating], mask: Mask | None = None) -> Layers:
         raise InputError("the picture has values that are not finite (NaN or infinity): repair or mask them")
     if not finite.all():
         image = np.where(finite, image, 0)
-    smallest = WINDOW << (LEVELS - 1)
-    if min(image.shape) < smallest:
+    if min(image.shape) < SMALLEST:
         raise InputError(
             f"the picture is {image.shape[1]} x {image.shape[0]} pixels, but the metric's filters need at least "
-            f"{smallest} x {smallest}: use a larger zone or a higher resolution"
+            f"{SMALLEST} x {SMALLEST}: use a larger zone or a higher resolution"
         )
-    encoded = to_srgb(np.maximum(image, 0).astype(np.float32, copy=False))
-    images = tuple(np.ascontiguousarray(level, np.float32) for level in gaussian_pyramid(encoded, LEVELS))
-    if use is None or use.all():
-        return Layers(images, (None,) * LEVELS)
-    masks = tuple(np.asarray(level, bool) for level in masked_pyramid(use, LEVELS))
-    for level, level_mask in enumerate(masks):
-        if not inside(level_mask, WINDOW).any():
-            raise InputError(
-                f"the mask is smaller than the metric's filters: no {WINDOW} x {WINDOW} window of pyramid level "
-                f"{level} lies wholly inside it; paint a zone of at least about "
-                f"{2 * smallest} x {2 * smallest} pixels"
-            )
-    return Layers(images, masks)
+    return image, use

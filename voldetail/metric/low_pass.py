@@ -47,6 +47,6 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
     }
 
 
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
+def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
     """1-Wasserstein distance in the reference's standard deviations."""
     return wasserstein(a, b, basis)

@@ -1,7 +1,7 @@
 """How filter magnitudes go together: over frequencies, levels and space (after Portilla & Simoncelli 2000, section 2).
 
-Edges, cracks and grains excite several orientations, frequencies and levels at one place, and again at the next
-grain; a picture with the same spectrum and random phases does not. The magnitudes are those of GD10 eq. 4, so they
+Edges, cracks and stones excite several orientations, frequencies and levels at one place, and again at the next
+stone; a picture with the same spectrum and random phases does not. The magnitudes are those of GD10 eq. 4, so they
 cost nothing more. Correlations do not see the spectrum itself, nor contrast.
 """
 
@@ -29,16 +29,16 @@ def basis(layers: Layers, /) -> Parts:
 
 def measure(layers: Layers, basis: Parts, /) -> Parts:
     """Correlations of the magnitudes: (136,) within a level, (289,) with the next, (17 * lags,) in space."""
-    found: dict[str, Array] = {}
+    correlations: dict[str, Array] = {}
     maps = [_standardised(layers, level) for level in range(LEVELS)]
     for level, name in enumerate(LEVEL_NAMES):
         magnitudes, allowed = maps[level]
         upper = np.triu_indices(len(magnitudes), 1)
-        found[f"within {name}"] = _correlations(magnitudes, magnitudes, allowed)[upper]
+        correlations[f"within {name}"] = _correlations(magnitudes, magnitudes, allowed)[upper]
         if level + 1 < LEVELS:  # a coarsest level has too few displaced pairs, and no next level
             step = 1 if level else 2
             lags = ((rows // step, columns // step) for rows, columns in LAGS)
-            found[f"space {name}"] = np.concatenate([_lagged(magnitudes, allowed, *lag) for lag in lags])
+            correlations[f"space {name}"] = np.concatenate([_lagged(magnitudes, allowed, *lag) for lag in lags])
             coarse, coarse_allowed = maps[level + 1]
             # Window y is centred on pixel y + 3, and coarse pixel y + 3 lies on fine pixel 2 y + 6: fine window
             # 2 y + 3, at level 0 (every second window) its neighbour 2 (y + 1).
@@ -47,17 +47,12 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
             rows, columns = np.minimum(fine.shape[1:], coarse.shape[1:])
             both = allowed[first::step, first::step][:rows, :columns] & coarse_allowed[:rows, :columns]
             across = _correlations(fine[:, :rows, :columns], coarse[:, :rows, :columns], both)
-            found[f"across {name}"] = across.ravel()
-    return found
-
-
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
-    """Root mean square difference of the correlations."""
-    return float(apart(a, b, basis))
+            correlations[f"across {name}"] = across.ravel()
+    return correlations
 
 
 def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
-    """The same for any number of ``b`` (..., n) at once."""
+    """Root mean square difference of the correlations, of any number of ``b`` (..., n) at once."""
     return np.asarray(np.sqrt(np.mean((a - b) ** 2, axis=-1)))
 
 

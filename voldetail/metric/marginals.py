@@ -43,6 +43,6 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
     return found
 
 
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
+def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
     """1-Wasserstein distance in the reference's standard deviations."""
     return wasserstein(a, b, basis)

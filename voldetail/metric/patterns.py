@@ -50,13 +50,8 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
     }
 
 
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
-    """Hellinger distance, 0 to 1."""
-    return float(apart(a, b, basis))
-
-
 def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
-    """The same for any number of ``b`` (..., 59) at once."""
+    """Hellinger distance, 0 to 1, of any number of ``b`` (..., 59) at once."""
     return np.asarray(np.sqrt(np.sum((np.sqrt(a) - np.sqrt(b)) ** 2, axis=-1) / 2))
 
 

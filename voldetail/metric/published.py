@@ -24,17 +24,17 @@ def basis(layers: Layers, /) -> Parts:
 
 def measure(layers: Layers, tops: Parts, /) -> Parts:
     """Normalised histograms h_{u,v,l}, (17, 32) a level, each row with sum 1."""
-    found = {}
+    histograms = {}
     for name, amplitudes in zip(LEVEL_NAMES, layers.amplitudes, strict=True):
         filters, samples = amplitudes.shape
         bins = (amplitudes * (BINS / tops[name])[:, None]).astype(np.int32)
         np.minimum(bins, BINS - 1, out=bins)
         bins += (np.arange(filters, dtype=np.int32) * BINS)[:, None]
         counts = np.bincount(bins.ravel(), minlength=filters * BINS)
-        found[name] = (counts.reshape(filters, BINS) / samples).astype(np.float32)
-    return found
+        histograms[name] = (counts.reshape(filters, BINS) / samples).astype(np.float32)
+    return histograms
 
 
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
+def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
     """One level's share of M: the squared differences summed over frequencies and bins."""
-    return float(np.sum((a.astype(np.float64) - b) ** 2))
+    return np.asarray(np.sum((a.astype(np.float64) - b) ** 2, axis=(-2, -1)))

@@ -30,12 +30,10 @@ def spread(functions: Array) -> Array:
     return np.asarray(np.maximum(functions.std(axis=1, keepdims=True), 1e-4), np.float32)
 
 
-def wasserstein(a: Array, b: Array, unit: Array | None) -> float:
-    """Mean of the 1-Wasserstein distances of K distributions (K, 32), each in its unit (K, 1) (None: 1)."""
-    return float(apart(a, b, unit))
+def wasserstein(a: Array, b: Array, unit: Array | None) -> Array:
+    """Mean of the 1-Wasserstein distances of K distributions (K, 32), each in its unit (K, 1) (None: 1), from those of b.
 
-
-def apart(a: Array, b: Array, unit: Array | None) -> Array:
-    """The same for any number of ``b`` (..., K, 32) at once."""
+    ``b`` may be any number of them at once, (..., K, 32).
+    """
     gap = np.abs(a - b)
     return np.asarray(np.mean(gap if unit is None else gap / unit, axis=(-2, -1)))

@@ -22,6 +22,6 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
     return found
 
 
-def compare(a: Array, b: Array, basis: Array | None, /) -> float:
+def apart(a: Array, b: Array, basis: Array | None, /) -> Array:
     """Mean over frequencies, in standard deviations of the reference."""
     return wasserstein(a, b, basis)

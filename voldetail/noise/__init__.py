@@ -6,14 +6,15 @@ from voldetail.noise.gabor import KERNEL_RADIUS, NoiseSettings, single_octave
 from voldetail.noise.lattice import cell_hash, feature_point, nearest_points, search_table
 from voldetail.noise.moments import moments
 from voldetail.noise.plates import PlateShape, plate_numbers
-from voldetail.noise.relief import relief_function
-from voldetail.noise.stones import GrainShape
+from voldetail.noise.relief import OCTAVE_NUMBERS, relief_function
+from voldetail.noise.stones import StoneShape
 
 __all__ = [
     "KERNEL_RADIUS",
-    "GrainShape",
+    "OCTAVE_NUMBERS",
     "NoiseSettings",
     "PlateShape",
+    "StoneShape",
     "cell_hash",
     "cell_value",
     "evaluate_curve",

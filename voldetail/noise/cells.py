@@ -41,7 +41,7 @@ def cell_value(points: tuple[Any, ...], seed: Any, *, scale: Any, anisotropy: An
 
 
 def number_of(word: Any, float_type: Any) -> Any:
-    """Return a number in [0, 1), uniform over the hash words of cells or grains."""
+    """Return a number in [0, 1), uniform over the hash words of cells or stones."""
     mixed = word * CELL_SALT
     mixed = (mixed ^ (mixed >> 15)) * CELL_SALT
     return unit(mixed ^ (mixed >> 13), float_type)

@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from voldetail.noise.lattice import FOURTH_POINT_RADIUS, RANKS, UNIT_16, Neighbourhood, nearest_points
 from voldetail.noise.plates import PlateShape, plate
-from voldetail.noise.stones import GrainShape, highest_grain
+from voldetail.noise.stones import StoneShape, highest_stone
 
 SIGMA = 0.25
 """Envelope deviation in cells: exp(-D / 2 sigma) has fallen to 1/e at half a cell, about the mean distance to
@@ -76,7 +76,7 @@ class NoiseSettings:
     dims: 2 on surface parameters, 3 in space. everywhere: True for (1, 50). weights: signed weight of the 1st
     to 3rd closest point, used when not everywhere; (k, k') is ones from k to k'. octaves: n >= 1. gaussian:
     envelope of the squared distance (round tops) instead of eq. 2's plain distance (pointed tops). highest: the
-    coarsest octave is made of grains (noise.grains), of which the highest counts, and `everywhere` holds. plates: each
+    coarsest octave is made of stones (noise.stones), of which the highest counts, and `everywhere` holds. plates: each
     cell of the coarsest octave has a plane of its own (noise.plates), and `everywhere` does not hold.
     """
 
@@ -102,29 +102,29 @@ class NoiseSettings:
         """Return the settings for GD10's k = first, k' = last: (1, 50) or any 1 <= k <= k' <= 3.
 
         ``signs`` weighs the first to third point where it is in the set; the paper's are all 1. With (1, -1) the noise
-        falls to zero where two points are equally close: the border between grains.
+        falls to zero where two points are equally close: the border between cells.
         """
         if plates and (first, last) == (1, 50):
             raise ValueError("plates belong to cells: (k, k') = (1, 50) has none")
         if (first, last) == (1, 50):
             return NoiseSettings(dims, True, (1.0, 1.0, 1.0), octaves, gaussian, highest)
         if highest:
-            raise ValueError(f"the highest of all grains needs (k, k') = (1, 50), not ({first}, {last})")
+            raise ValueError(f"the highest of all stones needs (k, k') = (1, 50), not ({first}, {last})")
         if not 1 <= first <= last <= RANKS - 1:
             raise ValueError(f"(k, k') = ({first}, {last}) is neither (1, 50) nor 1 <= k <= k' <= 3")
         w = tuple(float(signs[i - 1]) if first <= i <= last else 0.0 for i in (1, 2, 3))
         return NoiseSettings(dims, False, (w[0], w[1], w[2]), octaves, gaussian, plates=plates)
 
     def of_octave(self, octave: int) -> NoiseSettings:
-        """Return the settings of an octave; grains are the coarsest, and what is finer is their roughness; so are plates."""
+        """Return the settings of an octave; stones are the coarsest, and what is finer is their roughness; so are plates."""
         return replace(self, octaves=1, highest=self.highest and octave == 0, plates=self.plates and octave == 0)
 
 
 def single_octave(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, *numbers: Any) -> Any:
     """Return N(x), eq. 2, for ``x`` in cells; continuous everywhere, differentiable almost everywhere.
 
-    ``numbers`` are the stripes' frequency phi and spread theta, and those of a `PlateShape` where there are plates; or the
-    three of a `GrainShape` where the highest counts.
+    ``numbers`` are the stripes' frequency phi and spread theta, and those of a `PlateShape` where there are plates; or those
+    of a `StoneShape` where the highest counts.
     """
     return octave_and_owner(x, settings, salt, *numbers)[0]
 
@@ -132,9 +132,9 @@ def single_octave(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, *numbe
 def octave_and_owner(
     x: tuple[Any, ...], settings: NoiseSettings, salt: Any, *numbers: Any
 ) -> tuple[Any, Any | None]:
-    """Return `single_octave` and the hash word of the cell or grain that ``x`` belongs to, None where all points count."""
+    """Return `single_octave` and the hash word of the cell or stone that ``x`` belongs to, None where all points count."""
     if settings.highest:
-        return highest_grain(x, salt, GrainShape(*numbers), settings.gaussian)
+        return highest_stone(x, salt, StoneShape(*numbers), settings.gaussian)
     if settings.everywhere:
         return _sum_of_all(x, settings, salt, *numbers), None
     total, owner, nearest = _sum_of_ranks(x, settings, salt, *numbers[:2])

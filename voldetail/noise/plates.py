@@ -31,6 +31,7 @@ from typing import Any
 import drjit as dr
 
 from voldetail.noise.lattice import Neighbourhood
+from voldetail.noise.numbers import Numbers
 
 REACH = 2.0
 """Cells nearer than this are all in the search table, which has two each way."""
@@ -39,20 +40,16 @@ PLATE_SALT = 0x3C6EF35F
 """Multiplies the spare hash word for a plate's numbers, apart from its albedo's and stripes'; odd, else arbitrary."""
 
 LEAST_SQUARE = 1e-12
-"""Least squared distance under a root, as in noise.octave."""
+"""Least squared distance under a root, as in noise.gabor."""
 
 
 @dataclass(frozen=True)
-class PlateShape:
-    """Numbers of the plates, floats or float arrays of width 1: height o, tilt t, bevel w."""
+class PlateShape(Numbers):
+    """Numbers of the plates: height o, tilt t, bevel w."""
 
-    height: Any
-    tilt: Any
+    cell_height: Any
+    cell_tilt: Any
     bevel: Any
-
-    @property
-    def numbers(self) -> tuple[Any, Any, Any]:
-        return self.height, self.tilt, self.bevel
 
 
 def plate(x: tuple[Any, ...], salt: Any, nearest: Any, shape: PlateShape) -> Any:
@@ -66,7 +63,7 @@ def plate(x: tuple[Any, ...], salt: Any, nearest: Any, shape: PlateShape) -> Any
     share = dr.select(other == nearest, 1.0, dr.clip(_to_border(vector, beyond) / width, 0.0, 1.0))
     height, direction = plate_numbers(word, around.float_type)
     # `vector` points from x to the feature point; the offset from the point is its negative.
-    plane = shape.height * height + shape.tilt * (0.5 - _dot(direction[: len(x)], vector))
+    plane = shape.cell_height * height + shape.cell_tilt * (0.5 - _dot(direction[: len(x)], vector))
     return share * (2.0 - share) * plane
 
 

@@ -1,7 +1,7 @@
 """The relief function R (GD10 eq. 3): octaves of cellular-Gabor noise through the curve H.
 
 Symbols
-    R(x)    H(1/eta sum_i (q/m)^i N(m^i Q S x)), N one octave (noise.octave, eq. 2)
+    R(x)    H(1/eta sum_i (q/m)^i N(m^i Q S x)), N one octave (noise.gabor, eq. 2)
     m       lacunarity: octave i has frequency m^i and weight (q/m)^i
     q       gain of each octave over the one before; ours, and 1 in the paper
     S       diag(s f, s, s), Q rotation by `angle` in the surface plane; X = S Q x
@@ -10,7 +10,7 @@ Symbols
 
 The paper calls eta a constant and says no more. Octaves use independent points, so mean and deviation of
 their sum follow from those of one octave (`moments`): each is brought to mean 0 and deviation 1, which for equal
-octaves changes nothing but the constant, and lets grains be followed by plain noise. With z = sum / (ETA deviation of
+octaves changes nothing but the constant, and lets stones be followed by plain noise. With z = sum / (ETA deviation of
 the sum), the argument of H is z / sqrt(1 + z^2): strictly inside [-1, 1], without the plateaus that clipping would give; what it
 bends, the free curve H can unbend.
 """
@@ -25,12 +25,15 @@ from voldetail.noise.curve import evaluate_curve
 from voldetail.noise.gabor import TURN, NoiseSettings, octave_and_owner
 from voldetail.noise.moments import differentiable_moments
 from voldetail.noise.plates import PlateShape
-from voldetail.noise.stones import GrainShape
+from voldetail.noise.stones import StoneShape
 
 ETA = 1.5
 """Deviations at which the argument of H is 1/sqrt(2); tuned so that all eleven points of H are in use."""
 
 CURVE_POINTS = 11
+
+OCTAVE_NUMBERS = ("lacunarity", "gain", "stripe_frequency", "stripe_spread")
+"""Arguments of `relief_function` that are a detail's numbers, by the detail's own names."""
 
 OCTAVE_SALT = 0x632BE5AB
 """Step of the salt from one octave to the next; any odd number does, the hash mixes it."""
@@ -49,14 +52,14 @@ def relief_function(
     stripe_spread: Any,
     curve: Any,
     gain: Any = 1.0,
-    shape: GrainShape | None = None,
+    shape: StoneShape | None = None,
     plates: PlateShape | None = None,
 ) -> tuple[Any, Any | None]:
     """Return R(x) in [0, 1], eq. 3, at ``points`` (2 or 3 float arrays, scene units), and the hash word of the
-    cell or grain that it belongs to in the coarsest octave, None where all points count.
+    cell or stone that it belongs to in the coarsest octave, None where all points count.
 
     ``seed`` is a UInt array; ``curve`` a float array of eleven values; the others floats or float arrays of
-    width 1, differentiable. ``shape`` is that of the grains where the highest counts, ``plates`` that of
+    width 1, differentiable. ``shape`` is that of the stones where the highest counts, ``plates`` that of
     the plates where settings.plates. Keep what changes opaque (`dr.opaque`), else each value compiles a kernel.
     """
     float_type: Any = type(points[0])
@@ -72,13 +75,13 @@ def relief_function(
         own = settings.of_octave(octave)
         numbers: tuple[Any, ...] = (stripe_frequency, stripe_spread)
         if own.highest:
-            assert shape is not None, "grains need a shape"
+            assert shape is not None, "stones need a shape"
             numbers = shape.numbers
         if own.plates:
             assert plates is not None, "plates need a shape"
             numbers += plates.numbers
-        value, found = octave_and_owner(scaled, own, salt, *numbers)
-        owner = found if octave == 0 else owner
+        value, word = octave_and_owner(scaled, own, salt, *numbers)
+        owner = word if octave == 0 else owner
         mean, deviation = differentiable_moments(own, float_type, *numbers)
         total += (weight / deviation) * (value - mean)
         sum_of_squares += weight * weight

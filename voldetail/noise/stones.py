@@ -1,4 +1,4 @@
-"""Grains that lie on each other: one octave in which the highest kernel alone counts, instead of GD10's sum.
+"""Stones that lie on each other: one octave in which the highest kernel alone counts, instead of GD10's sum.
 
 The sum of eq. 2 blends what it joins, and cells of nearest points (Worley 1996) fit together like paving. Stones do
 neither: each has its own shape and turn, and where two meet, one hides the other. So each feature point carries a
@@ -9,7 +9,7 @@ Symbols
     g_i     (1 - b) |w|_2 + b C max(|w|_inf, |w|_1 / A),   w = T_i Q_i (x - P_i)
     Q_i     a hashed rotation: no two bodies lie alike
     T_i     diag(1, 1 + (e - 1) u, 1 + (e - 1) u'), hashed: shorter along two of the body's axes
-    rho_i   R (1 - s u''), hashed: its size                R     GRAIN_RADIUS, support in cells
+    rho_i   R (1 - s u''), hashed: its size                R     STONE_RADIUS, support in cells
     b, e, s facets, elongation, size spread
     C, A    a ball whose corners were cut: C makes it lie inside the round one, so that g >= |x - P|
 
@@ -26,8 +26,9 @@ from typing import Any
 import drjit as dr
 
 from voldetail.noise.lattice import Neighbourhood
+from voldetail.noise.numbers import Numbers
 
-GRAIN_RADIUS = {2: 1.8, 3: 1.8}
+STONE_RADIUS = {2: 1.8, 3: 1.8}
 """Support in cells, within the two cells each way that the search table covers: wide enough that among stones up to 2.2
 times as long as thick, the smallest 0.45 of the largest, the ground shows on less than 3 % of a plane and 2 % in space."""
 
@@ -45,21 +46,17 @@ UNIT_8 = 2.0**-8
 
 
 @dataclass(frozen=True)
-class GrainShape:
-    """Numbers of the bodies, floats or float arrays of width 1: facets b, elongation e, size spread s."""
+class StoneShape(Numbers):
+    """Numbers of the bodies: facets b, elongation e, size spread s."""
 
     facets: Any
     elongation: Any
     size_spread: Any
 
-    @property
-    def numbers(self) -> tuple[Any, Any, Any]:
-        return self.facets, self.elongation, self.size_spread
 
-
-def highest_grain(x: tuple[Any, ...], salt: Any, shape: GrainShape, rounded: bool) -> tuple[Any, Any]:
-    """Return (N(x), the word of the grain on top) for ``x`` in cells; see the top of this file."""
-    radius = GRAIN_RADIUS[len(x)]
+def highest_stone(x: tuple[Any, ...], salt: Any, shape: StoneShape, rounded: bool) -> tuple[Any, Any]:
+    """Return (N(x), the word of the stone on top) for ``x`` in cells; see the top of this file."""
+    radius = STONE_RADIUS[len(x)]
     around = Neighbourhood(x, salt, radius)
     uint_type, float_type = type(salt), around.float_type
     width = dr.width(x[0])
@@ -80,13 +77,13 @@ def highest_grain(x: tuple[Any, ...], salt: Any, shape: GrainShape, rounded: boo
         lambda index, best, owner: (index < around.count) & (dr.detach(best) < reachable(index)),
         body,
         max_iterations=around.count,
-        label="highest grain",
+        label="highest stone",
     )
     return best, owner
 
 
-def _gauge(vector: tuple[Any, ...], word: Any, float_type: Any, shape: GrainShape) -> Any:
-    """Return g_i / (rho_i / R): 0 in the middle of the grain, R on its border."""
+def _gauge(vector: tuple[Any, ...], word: Any, float_type: Any, shape: StoneShape) -> Any:
+    """Return g_i / (rho_i / R): 0 in the middle of the stone, R on its border."""
     mixed = (word ^ (word >> 15)) * SHAPE_SALT
     mixed = mixed ^ (mixed >> 13)
 

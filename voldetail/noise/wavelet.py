@@ -76,7 +76,7 @@ class WaveletNoise:
         """Return for each axis and step (-1, 0, 1) the words by which the node moves each axis (its own: the index)."""
         salt = seed + self.uint_type(band) * np.uint32(self.dims)
         shift = int(self.side).bit_length() - 1
-        found = []
+        indices = []
         for axis, node in enumerate(nodes):
             first, last = node - 1, node + 1
             words = [
@@ -91,8 +91,8 @@ class WaveletNoise:
                 moves = [dr.select(same, words[0][other], words[1][other]) for other in range(self.dims)]
                 moves[axis] = dr.reinterpret_array(self.uint_type, place)
                 steps.append(moves)
-            found.append(steps)
-        return found
+            indices.append(steps)
+        return indices
 
     def _sum(self, moves: list[list[list[Any]]], weights: list[tuple[Any, ...]]) -> Any:
         mask = self.side - 1

@@ -43,13 +43,13 @@ _SLICE_REACH = 10.0  # coefficients within which all of a slice's covariance lie
 def kernels() -> Floats:
     """Return the stationary kernels (3, 2 REACH + 1) of 1, P and P P' at distances -REACH to REACH."""
     part = projection(_LINE)
-    found = np.zeros((3, 2 * REACH + 1))
-    found[0, REACH] = 1.0
+    spectra = np.zeros((3, 2 * REACH + 1))
+    spectra[0, REACH] = 1.0
     places = np.arange(_LINE)
     for column, distance in enumerate(range(-REACH, REACH + 1)):
         for row, matrix in ((1, part), (2, part @ part.T)):
-            found[row, column] = np.mean(matrix[places, (places + distance) % _LINE])
-    return found
+            spectra[row, column] = np.mean(matrix[places, (places + distance) % _LINE])
+    return spectra
 
 
 def spline(x: NDArray[np.floating]) -> NDArray[np.floating]:
@@ -61,7 +61,7 @@ def spline(x: NDArray[np.floating]) -> NDArray[np.floating]:
 @cache
 def _covariance_at(phases: tuple[float, ...], distances: tuple[float, ...]) -> Floats:
     tau = np.asarray(distances)
-    found = np.zeros((3, len(tau)))
+    covariance = np.zeros((3, len(tau)))
     for phase in phases:
         own = spline(phase - np.arange(-1, 2))  # weights of the coefficients -1, 0, 1
         other = np.floor(phase + tau + 0.5).astype(np.int64)
@@ -71,8 +71,8 @@ def _covariance_at(phases: tuple[float, ...], distances: tuple[float, ...]) -> F
                 lag = other + step - (j - 1)
                 inside = np.abs(lag) <= REACH
                 kernel = np.where(inside, kernels()[:, np.clip(lag, -REACH, REACH) + REACH], 0.0)
-                found += weight * own[j] * kernel
-    return found / len(phases)
+                covariance += weight * own[j] * kernel
+    return covariance / len(phases)
 
 
 def covariance_lines(tau: Floats, spacing: float = 0.0) -> Floats:
@@ -148,7 +148,7 @@ def passed_slice(side: Floats, turn: Floats) -> Floats:
     """
     tau = np.linspace(-_SLICE_REACH * 2.0, _SLICE_REACH * 2.0, 6001)
     lines = covariance_lines(tau)
-    found = np.zeros(len(side))
+    passed = np.zeros(len(side))
     for index, u in enumerate(np.asarray(side, np.float64)):
         span = min(float(u), _SLICE_REACH)
         count = max(8, int(np.ceil(span / 0.2)))
@@ -160,8 +160,8 @@ def passed_slice(side: Floats, turn: Floats) -> Floats:
             places = [x[None, :] * row[across] + y[:, None] * row[up] for row in turn]
             for term, sign in enumerate(TERMS):
                 product = np.prod([np.interp(place, tau, lines[term]) for place in places], axis=0)
-                found[index] += GAIN * sign * float(np.sum(product * weight)) / 3.0
-    return np.asarray(np.clip(found / variance(3), 0.0, 1.0))
+                passed[index] += GAIN * sign * float(np.sum(product * weight)) / 3.0
+    return np.asarray(np.clip(passed / variance(3), 0.0, 1.0))
 
 
 def passed_variance(side: Floats) -> Floats:
@@ -170,10 +170,10 @@ def passed_variance(side: Floats) -> Floats:
     With sides along the axes; 1 for 0, falling to 0. The integral of the covariance times the square's own.
     """
     nodes, weights = np.polynomial.legendre.leggauss(_QUADRATURE)
-    found = np.zeros(len(side))
+    passed = np.zeros(len(side))
     for index, u in enumerate(np.asarray(side, np.float64)):
         if u == 0.0:
-            found[index] = variance(2)
+            passed[index] = variance(2)
             continue
         # Pieces no longer than half a coefficient: the covariance is a polynomial between them, nearly.
         span = min(float(u), REACH + 3.0)
@@ -182,5 +182,5 @@ def passed_variance(side: Floats) -> Floats:
         tau = (low + (high - low) * (nodes + 1) / 2).ravel()
         weight = ((high - low) / 2 * weights).ravel()
         means = (covariance_lines(tau) * (2.0 * weight * (1.0 - tau / u) / u)).sum(axis=1)
-        found[index] = GAIN * np.sum(np.asarray(TERMS) * means**2)
-    return np.asarray(np.maximum(found, 0.0) / variance(2))
+        passed[index] = GAIN * np.sum(np.asarray(TERMS) * means**2)
+    return np.asarray(np.maximum(passed, 0.0) / variance(2))

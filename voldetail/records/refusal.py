@@ -9,7 +9,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from voldetail.detail.parameters import nearest
+from voldetail.records.nearest import nearest
 
 LONGEST_SHOWN = 60  # characters of a refused value; the sentence has to stay readable
 

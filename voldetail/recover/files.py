@@ -87,7 +87,8 @@ def load_relief(path: Path | str) -> MappedDetail:
     notes = (*record.notes, *(f"The {name} was changed after it was made." for name in edited))
     amplitude = record.relief.model_copy(update={"amplitude": min(top - bottom, 1.0)})
     record = record.model_copy(update={"relief": amplitude, "notes": notes})
-    return MappedDetail(record, np.asarray((height - bottom) / (top - bottom), np.float32), albedo, np.asarray(roughness, np.float32))
+    relative = np.asarray((height - bottom) / (top - bottom), np.float32)
+    return MappedDetail(record, relative, np.asarray(albedo, np.float32), np.asarray(roughness, np.float32))
 
 
 def load_any(path: Path | str) -> Detail | MappedDetail:

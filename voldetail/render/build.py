@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from voldetail.detail import Detail
+from voldetail.geometry.primitives.primitive import primitive_of
 from voldetail.geometry.proxy import Proxy, make_proxy, seen_part
 from voldetail.render.heightfield import HeightField
 from voldetail.render.mesh_surface import MeshSurface
@@ -28,7 +29,7 @@ class Surface(Protocol):
     view: View
 
     def update(self, detail: Detail) -> None: ...
-    def look(self, subsamples: int) -> tuple[object, object, object, object, object]: ...
+    def samples(self, subsamples: int) -> tuple[object, object, object, object, object]: ...
     def lit(self, points: object, normals: object, direction: object, distance: object) -> object: ...
 
 
@@ -50,8 +51,8 @@ def build(
     proxy = make_proxy(setup.proxy, view.pixel, setup.domain)
     if not view.perspective:
         margin = max(FLAT_MARGIN * view.pixel, SHADOW_REACH)
-        proxy = seen_part(proxy, view, margin, convex=setup.proxy.kind not in ("plane", "mesh"))
-    return MeshSurface(proxy, view, one_sided_sky=setup.proxy.kind == "plane")
+        proxy = seen_part(proxy, view, margin, convex=primitive_of(setup.proxy).convex)
+    return MeshSurface(proxy, view, one_sided_sky=primitive_of(setup.proxy).slab)
 
 
 def edge_of(setup: Setup, view: View) -> float:
@@ -63,7 +64,7 @@ def faces_camera(setup: Setup) -> bool:
     """Whether the proxy is a plane seen head-on without perspective, which fills the view."""
     proxy = setup.proxy
     return (
-        proxy.kind == "plane" and setup.camera.kind == "orthographic" and proxy.size is None
+        proxy.row.flat and setup.camera.kind == "orthographic" and proxy.size is None
         and all(angle == 0 for angle in proxy.rotation)
     )
 

@@ -9,9 +9,18 @@ import numpy as np
 
 from voldetail.backend import mitsuba
 from voldetail.errors import InputError
+from voldetail.files import readable
 
 SUFFIXES = (".exr", ".hdr")
-LARGEST = 512 * 1024 * 1024
+LARGEST = 512 * 2**20
+"""Bytes of a map: four times those of 8192 x 4096 in half floats."""
+
+
+def checked_environment(path: Path) -> Path:
+    """Return ``path`` if it is a file of a known kind and of at most LARGEST bytes; raises InputError for another."""
+    if path.suffix.lower() not in SUFFIXES:
+        raise InputError(f"The environment map {path} is not of a known kind: give an .exr or .hdr file.")
+    return readable(path, "environment map", LARGEST)
 
 
 def environment_emitter(path: Path) -> Any:
@@ -21,12 +30,7 @@ def environment_emitter(path: Path) -> Any:
     finite and at least 0.
     """
     mi = mitsuba()
-    if path.suffix.lower() not in SUFFIXES:
-        raise InputError(f"The environment map {path.name} is not of a known kind: give an .exr or .hdr file.")
-    if not path.is_file():
-        raise InputError(f"There is no environment map at {path}: check the path.")
-    if path.stat().st_size > LARGEST:
-        raise InputError(f"The environment map {path.name} is larger than 512 MB: make it smaller.")
+    checked_environment(path)
     try:
         bitmap = mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
     except RuntimeError as error:

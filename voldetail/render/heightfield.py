@@ -110,7 +110,7 @@ class HeightField:
             total = total + dr.maximum(lobe + 0.5 * self.normal[2] * cosine_squared, 0.0)
         return total * (2.0 / len(AZIMUTHS))
 
-    def look(self, subsamples: int) -> tuple[Any, Any, Any, Any, Any]:
+    def samples(self, subsamples: int) -> tuple[Any, Any, Any, Any, Any]:
         """Return (points, unit normals, sky visibility, seen at all, albedo factor) of the samples, row by row."""
         mi = mitsuba()
         gx, gy = self._grid(subsamples)

@@ -102,14 +102,14 @@ class MarchedVolume:
             def walk(i: Any, passed: Any, sums: list[Any]) -> tuple[Any, Any, list[Any]]:
                 return i + 1.0 + dr.floor(ahead / h), passed, sums
 
-            def look(i: Any, passed: Any, sums: list[Any]) -> tuple[Any, Any, list[Any]]:
+            def sample(i: Any, passed: Any, sums: list[Any]) -> tuple[Any, Any, list[Any]]:
                 found = self._density.at(point)
                 through = dr.exp(-self.extinction * found.w * h)
                 weight = passed * (1.0 - through)
                 colours = shade(point, found, weight > 0.0)
                 return i + 1.0, passed * through, [s + weight * c for s, c in zip(sums, colours, strict=True)]
 
-            return dr.if_stmt((i, passed, sums), empty, walk, look)
+            return dr.if_stmt((i, passed, sums), empty, walk, sample)
 
         width = dr.width(ray.o)
         zeros = [dr.zeros(mi.Float, width) for _ in range(2 + len(shininess))]

@@ -77,7 +77,7 @@ class TracedMesh:
         """Return the camera rays of a regular grid of samples, row by row."""
         return rays_of(self.view, subsamples)
 
-    def look(self, subsamples: int) -> tuple[Any, Any, Any, Any, Any]:
+    def samples(self, subsamples: int) -> tuple[Any, Any, Any, Any, Any]:
         """Return (points, unit normals towards the viewer, sky visibility, seen at all, albedo factor), row by row."""
         ray = self.rays(subsamples)
         hit = self.scene.ray_intersect(ray)

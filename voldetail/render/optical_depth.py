@@ -35,9 +35,9 @@ class LightDepth:
 
     def __init__(self, grid: DensityGrid, lamp: Lamp) -> None:
         mi = mitsuba()
-        self.near = lamp.position is not None
+        self.near = lamp.near
         lower, upper = np.array(grid.lower), np.array(grid.upper)
-        given = np.array(lamp.position if self.near else lamp.direction, dtype=float)
+        given = np.array(lamp.source, dtype=float)
         # How far the light is outside of each pair of faces; at least one where it is outside the box.
         outside = np.maximum(lower - given, given - upper) if self.near else np.abs(given)
         self.axis = int(np.argmax(outside))

@@ -36,20 +36,5 @@ def path_integrator() -> Any:
 
 def emitters_of(lamp: Lamp, sky: float, tint: tuple[float, ...] = (1.0, 1.0, 1.0)) -> dict[str, Any]:
     """Return Mitsuba emitters for a lamp and a uniform sky of radiance ``sky``, both of the colour ``tint``."""
-    emitters: dict[str, Any] = {"sky": {"type": "constant", "radiance": _rgb(sky, tint)}}
-    if lamp.direction is not None:
-        emitters["light"] = {
-            "type": "directional", "direction": [-v for v in lamp.direction],
-            "irradiance": _rgb(math.pi * lamp.strength, tint),
-        }
-    else:
-        assert lamp.position is not None
-        power = math.pi * lamp.strength * lamp.position[2] ** 2
-        emitters["light"] = {
-            "type": "point", "position": list(lamp.position), "intensity": _rgb(power, tint)
-        }
-    return emitters
-
-
-def _rgb(value: float, tint: tuple[float, ...]) -> dict[str, Any]:
-    return {"type": "rgb", "value": [value * c for c in tint]}
+    radiance = {"type": "rgb", "value": [sky * c for c in tint]}
+    return {"sky": {"type": "constant", "radiance": radiance}, "light": lamp.emitter(tint)}

@@ -101,7 +101,7 @@ def _reflected(
 ) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
     """Return covered, ambient, diffuse (one or three channels) and a lobe for each of ``shininess`` of a surface's samples."""
     mi = mitsuba()
-    points, normals, sky, seen, albedo = surface.look(subsamples)
+    points, normals, sky, seen, albedo = surface.samples(subsamples)
     direction, distance, irradiance = lamp.at(points)
     cosine = dr.maximum(dr.dot(normals, direction), 0.0)
     lit = surface.lit(points, normals, direction, distance)

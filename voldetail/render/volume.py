@@ -1,7 +1,7 @@
 """A volumetric detail about a proxy, as the fit sees it: baked to a grid and marched.
 
-The proxy's density is shifted by the relief (scene.hypertexture). A solid detail is opaque within about a cell and shaded
-on its gradient; a medium scatters (scene.medium). The plane that fills a photo becomes a slab of solid matter, or a sheet:
+The proxy's density is shifted by the relief (field.hypertexture). A solid detail is opaque within about a cell and shaded
+on its gradient; a medium scatters (field.medium). The plane that fills a photo becomes a slab of solid matter, or a sheet:
 matter on both sides of the plane z = 0, between which the background may show.
 """
 
@@ -15,7 +15,9 @@ from voldetail.detail import Detail
 from voldetail.field.hypertexture import Hypertexture
 from voldetail.field.medium import Medium
 from voldetail.field.shell import Shell, make_shell
-from voldetail.field.shell_plan import LEAST_CELLS, ShellPlan, plan_shell
+from voldetail.field.shell_grid import ShellPlan
+from voldetail.field.shell_plan import LEAST_CELLS, plan_shell
+from voldetail.geometry.primitives.primitive import primitive_of
 from voldetail.render.marched import MarchedVolume
 from voldetail.setup.setup import ProxySetup
 from voldetail.setup.view import View
@@ -71,7 +73,7 @@ class Volume(MarchedVolume):
 
     def update(self, detail: Detail) -> None:
         """Bake ``detail`` and make it ready to be looked at."""
-        self.one_sided_sky = self.proxy.kind == "plane" and detail.medium is None
+        self.one_sided_sky = primitive_of(self.proxy).slab and detail.medium is None
         self.fill(self.texture(detail).bake(), medium_of(detail, self.edge, self.scale))
 
     def texture(self, detail: Detail) -> Hypertexture:
@@ -97,7 +99,7 @@ class Volume(MarchedVolume):
             thickness, amplitude = (MESH_STEP * max(v, w) for v, w in
                                     ((thickness, planned.thickness), (amplitude, planned.amplitude)))
         shell = make_shell(self.plan(thickness, amplitude, solid))
-        if self.proxy.kind == "mesh":
+        if not primitive_of(self.proxy).exact:
             self._kept = shell
             return replace(shell, plan=replace(shell.plan, thickness=wanted[0], amplitude=wanted[1]))
         return shell
@@ -111,7 +113,7 @@ class Volume(MarchedVolume):
     def _placed(self, margin: float, solid: bool) -> ProxySetup:
         """Return the proxy; the plane that fills the view as large as that and ``margin``, as a sheet where not solid."""
         if not self.whole_plane:
-            if solid or self.proxy.kind != "plane":
+            if solid or not primitive_of(self.proxy).slab:
                 return self.proxy
             return self.proxy.model_copy(update={"kind": "box", "size": (*self.proxy.extent[:2], SHEET)})
         view, (x, y, _) = self.view, self.proxy.position

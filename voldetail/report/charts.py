@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from voldetail.detail import Detail
+from voldetail.detail import Detail, NoiseFloor
 from voldetail.image import luminance, to_srgb
 from voldetail.report.verdict import number
-
-if TYPE_CHECKING:
-    from voldetail.fit.fitter import FitResult
+from voldetail.results import FitResult
 
 PHOTO_COLOUR = "#4f86c6"
 FIT_COLOUR = "#e8833a"  # both legible on white and on near-black, and apart for every common colour vision
@@ -87,16 +85,7 @@ def draw_convergence(axes: Axes, ink: Ink, result: FitResult) -> None:
         fontsize=9,
         color=ink.text,
     )
-    floor = result.detail.noise_floor
-    marks = (
-        (floor.photo_halves, "the photo's two halves", "--"),
-        (floor.other_seed, "two seeds of the detail", ":"),
-    )
-    for value, name, dashes in marks:
-        if value:
-            axes.axhline(
-                value, color=PHOTO_COLOUR, linestyle=dashes, linewidth=1.4, label=f"{name}: {number(value)}"
-            )
+    _draw_floors(axes, result.detail.noise_floor)
     axes.set_yscale("log")
     low, high = axes.get_ylim()
     axes.set_ylim(low / 1.15, high * (high / low) ** 0.35)  # room for the legend
@@ -112,6 +101,19 @@ def draw_convergence(axes: Axes, ink: Ink, result: FitResult) -> None:
     title = "The search: distance M between photo and fit"
     style(axes, ink, title, "pictures compared", "M (lower is nearer)")
     _legend(axes, ink)
+
+
+def _draw_floors(axes: Axes, floor: NoiseFloor) -> None:
+    """Draw the distances of equal textures as level lines."""
+    marks = (
+        (floor.photo_halves, "the photo's two halves", "--"),
+        (floor.other_seed, "two seeds of the detail", ":"),
+    )
+    for value, name, dashes in marks:
+        if value:
+            axes.axhline(
+                value, color=PHOTO_COLOUR, linestyle=dashes, linewidth=1.4, label=f"{name}: {number(value)}"
+            )
 
 
 def draw_profile(axes: Axes, ink: Ink, detail: Detail) -> None:

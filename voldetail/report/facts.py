@@ -2,48 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING
-
 from voldetail.detail import parameter
 from voldetail.report.verdict import number
-
-if TYPE_CHECKING:
-    from voldetail.fit.fitter import FitResult
-    from voldetail.fit.interval import AmplitudeInterval
-    from voldetail.setup.setup import Light, Setup
-
-_SIDES = ("the right", "the upper right", "above", "the upper left", "the left", "the lower left", "below",
-          "the lower right")  # fmt: skip
-HEAD_ON = 80.0  # degrees of elevation from which a side can no longer be told
+from voldetail.results import EVEN_ENOUGH, AmplitudeInterval, FitResult
+from voldetail.setup.setup import Light, Setup
 
 
 def light_words(light: Light) -> str:
     """The light in words, angles in degrees."""
-    if light.kind == "flash":
-        foot = ""
-        if light.foot:
-            left, top = (100 * v for v in light.foot)
-            foot = f", nearest {left:.0f} % from the left and {top:.0f} % from the top"
-        return f"a flash {light.height:.3g} photo widths in front of it{foot}"
-    if light.position:
-        return (
-            "a lamp at "
-            + ", ".join(f"{v:.3g}" for v in light.position)
-            + " scene units (right, up, to the viewer)"
-        )
-    assert light.direction is not None
-    azimuth, elevation = angles(light.direction)
-    if elevation > HEAD_ON:
-        return f"from the viewer's side, {elevation:.0f} degrees above the picture"
-    side = _SIDES[round(azimuth / 45) % 8]
-    return f"from {side} (azimuth {azimuth:.0f} degrees), {elevation:.0f} degrees above the picture"
-
-
-def angles(direction: tuple[float, float, float]) -> tuple[float, float]:
-    """Azimuth from +x counter-clockwise, 0 to 360, and elevation towards the viewer, in degrees."""
-    x, y, z = direction
-    return math.degrees(math.atan2(y, x)) % 360, math.degrees(math.atan2(z, math.hypot(x, y)))
+    return light.row.words(light)
 
 
 def duration(seconds: float) -> str:
@@ -56,23 +23,19 @@ def duration(seconds: float) -> str:
     return f"{whole // 3600} h {whole // 60 % 60:02d} min"
 
 
-EVEN_ENOUGH = 0.45
-"""As in a fit's warning; a report knows nothing of fits, and a test holds the two together."""
-
-
 def facts(result: FitResult) -> list[tuple[str, str]]:
     """Label and text of each fact about the photo and the search, in reading order."""
     setup, target = result.setup, result.target
     rows, columns = target.shape
     x, y, width, height = target.zone
-    shown = f"{target.mask.shape[1]} x {target.mask.shape[0]}"
+    compared = f"{target.mask.shape[1]} x {target.mask.shape[0]}"
     used = 100 * float(target.mask.mean())
     masked = "" if used > 99.95 else f", {used:.0f} % of them used"
     rate = f", {result.evaluations / result.seconds:.1f} a second" if result.seconds > 0 else ""
     notes = f" ({'; '.join(target.photo.notes)})" if target.photo.notes else ""
     return [
         ("Photo", f"{setup.photo.name}, {columns} x {rows} pixels{notes}"),
-        ("Zone", f"{width} x {height} pixels at {x}, {y} from the top left; compared at {shown}{masked}"),
+        ("Zone", f"{width} x {height} pixels at {x}, {y} from the top left; compared at {compared}{masked}"),
         *([("Evenness", evenness_words(result))] if target.unevenness is not None else []),
         ("Light", light_words(setup.light)),
         ("Proxy", _proxy(setup)),
@@ -80,14 +43,14 @@ def facts(result: FitResult) -> list[tuple[str, str]]:
         ("Solver", f"{setup.fit.solver}, metric {setup.fit.metric}, seed {setup.seed}; {result.status}"),
         ("Distance", distance_words(result)),
         *([("Colour", colour_words(result))] if result.colour is not None else []),
-        *([("Medium", medium_words(result))] if result.told else [("Amplitude", amplitude_words(result))]),
+        *([("Medium", medium_words(result))] if result.identifiability else [("Amplitude", amplitude_words(result))]),
     ]
 
 
 def overlay_words(setup: Setup) -> str:
     """What is drawn over the whole photo."""
     words = "The whole photo: the zone framed in white, what is not used dark"
-    flat = setup.proxy.kind == "plane" and setup.camera.kind == "orthographic"
+    flat = setup.proxy.row.flat and setup.camera.kind == "orthographic"
     # A plane that faces the viewer fills the photo and so has no outline in it.
     filled = flat and setup.proxy.size is None and not any(setup.proxy.rotation)
     return words + ("; the proxy is a plane that fills it" if filled else ", the proxy's outline orange")
@@ -144,9 +107,9 @@ def evenness_words(result: FitResult) -> str:
 def medium_words(result: FitResult) -> str:
     """What the photo tells of each number of a medium, and what it does not."""
     said, open_ = [], []
-    for t in result.told:
+    for t in result.identifiability:
         label = parameter(t.key).label.lower()
-        if t.nothing:
+        if t.unidentified:
             open_.append(label)
             continue
         less, more = (" or less" if t.low <= t.least else ""), (" or more" if t.high >= t.most else "")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from io import BytesIO
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +21,6 @@ SHEET_PIXELS = 1600  # width of a contact sheet
 LARGEST_TILE = 400
 CAPTION_PIXELS = 26
 DPI = 100
-
-AnimationFormat = Literal["gif", "png"]
 
 
 def write_contact_sheet(path: Path, frames: Sequence[tuple[str, NDArray[Any]]], title: str) -> None:

@@ -19,11 +19,11 @@ def heat(values: NDArray[Any], photo: NDArray[Any] | None = None) -> NDArray[np.
 
     `photo` (H, W, 3), linear, shimmers through if given.
     """
-    known = np.isfinite(values)
-    low, high = (float(values[known].min()), float(values[known].max())) if known.any() else (0.0, 0.0)
+    finite = np.isfinite(values)
+    low, high = (float(values[finite].min()), float(values[finite].max())) if finite.any() else (0.0, 0.0)
     span = high - low if high > low else 1.0
-    colours = colormaps["plasma"](np.where(known, (values - low) / span, 0))[..., :3]
+    colours = colormaps["plasma"](np.where(finite, (values - low) / span, 0))[..., :3]
     if photo is not None:
         grey = to_srgb(np.clip(np.nan_to_num(luminance(photo)), 0, 1))[..., None]
         colours = (1 - SHOWN) * colours + SHOWN * grey
-    return to_linear(np.where(known[..., None], colours, NOWHERE).astype(np.float32))
+    return to_linear(np.where(finite[..., None], colours, NOWHERE).astype(np.float32))

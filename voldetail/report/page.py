@@ -9,7 +9,7 @@ from importlib.resources import files
 from io import StringIO
 from pathlib import Path
 from string import Template
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
@@ -21,10 +21,7 @@ from voldetail.report.charts import Ink, draw_convergence, draw_histograms, draw
 from voldetail.report.facts import facts, light_words, overlay_words
 from voldetail.report.pictures import data_uri, dimmed
 from voldetail.report.verdict import verdict
-
-if TYPE_CHECKING:
-    from voldetail.apply.gallery import Gallery
-    from voldetail.fit.fitter import FitResult
+from voldetail.results import FitResult, Gallery
 
 # Stand-ins that the page's own colour replaces, so that the diagrams follow a light or dark page.
 _TEXT, _FAINT = "#010203", "#010204"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib import patheffects
@@ -16,13 +16,11 @@ from numpy.typing import NDArray
 from voldetail.detail import describe_in_words, summary
 from voldetail.files import write_bytes
 from voldetail.report.charts import Ink, draw_convergence, draw_histograms, draw_profile, new_figure
-from voldetail.report.facts import angles, facts, overlay_words
+from voldetail.report.facts import facts, overlay_words
 from voldetail.report.pictures import dimmed, encoded
 from voldetail.report.verdict import verdict
-
-if TYPE_CHECKING:
-    from voldetail.apply.gallery import Gallery
-    from voldetail.fit.fitter import FitResult
+from voldetail.results import FitResult, Gallery
+from voldetail.setup.light import angles_of
 
 # Inches.
 WIDTH, MARGIN, GAP = 14.0, 0.55, 0.2
@@ -103,7 +101,7 @@ def _main_row(page: _Page, result: FitResult, gallery: Gallery, height: float) -
     axes = page.picture(shown, MARGIN, MAIN, height, "Photo: the zone that was fitted", 10.5)
     direction = result.setup.light.direction
     if direction is not None:
-        _arrow(axes, angles(direction), gallery.photo.shape[:2])
+        _arrow(axes, angles_of(direction), gallery.photo.shape[:2])
     fitted = dimmed(gallery.fitted, gallery.mask)
     page.picture(fitted, second, MAIN, height, "Fit: same scale, same light, same exposure", 10.5)
     over = gallery.overlay

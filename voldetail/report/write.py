@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from voldetail.report.page import write_page
 from voldetail.report.sheet import write_sheet
-
-if TYPE_CHECKING:
-    from voldetail.apply.gallery import Gallery
-    from voldetail.fit.fitter import FitResult
+from voldetail.results import FitResult, Gallery
 
 PAGE_NAME = "report.html"
 SHEET_NAME = "sheet.png"

@@ -13,10 +13,11 @@ from pydantic import ValidationError
 
 from voldetail.detail.record import Record
 from voldetail.errors import InputError
+from voldetail.image.examples import PREFIX
 from voldetail.records.reading import read_small_text
 from voldetail.records.refusal import dotted, printable, refusal, shown, worst
 from voldetail.setup.light import parse_light
-from voldetail.setup.setup import SKIMAGE_PREFIX, Setup
+from voldetail.setup.setup import Setup
 
 _PATHS = (("photo", "path"), ("mask",), ("proxy", "mesh"), ("output",))
 
@@ -167,6 +168,6 @@ def _with_paths(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         table = made.get(tables[0]) if tables else made
         value = table.get(name) if isinstance(table, dict) else None
         text = os.fspath(value) if isinstance(value, str | Path) else ""
-        if table is not None and text and not text.startswith(SKIMAGE_PREFIX):
+        if table is not None and text and not text.startswith(PREFIX):
             table[name] = os.path.abspath(folder / text)
     return made

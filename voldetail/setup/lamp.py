@@ -3,20 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter
 
-from voldetail.errors import InputError
-from voldetail.setup.light import FORMS_GIVEN
-from voldetail.setup.setup import Light
-
-FOOT_BLUR = 0.06
-"""Blur, in photo widths, before the brightest point is taken as the flash's foot; tuned on the flash photographs of
-../shared/data so that a single glint does not win."""
+BEAM = 0.75
+"""Share of a cone's half opening within which it is at full strength (Mitsuba's default for `spot`)."""
 
 
 @dataclass(frozen=True)
@@ -26,13 +20,36 @@ class Lamp:
     ``strength`` is the irradiance in units of pi at the origin's plane facing the light (distant) or at the foot of a
     near one: a white matt surface there has radiance ``strength``. at_camera: a flash, seen from where it shines; the
     view of each point is then the direction to the light. (A plane that faces a camera is drawn by perspective as by
-    parallel rays, up to scale, but its highlight is not.)
+    parallel rays, up to scale, but its highlight is not.) axis, cone: of a near one that shines into a cone, the unit vector
+    along its middle and half its opening in radians.
     """
 
     direction: tuple[float, float, float] | None = None
     position: tuple[float, float, float] | None = None
     strength: float = 1.0
     at_camera: bool = False
+    axis: tuple[float, float, float] | None = None
+    cone: float = math.pi
+
+    @property
+    def near(self) -> bool:
+        """Whether it stands at a place, and its strength varies."""
+        return self.position is not None
+
+    @property
+    def source(self) -> tuple[float, float, float]:
+        """Where it stands, or the direction to it."""
+        return self.position or self.direction or (0.0, 0.0, 1.0)
+
+    @property
+    def elevation(self) -> float:
+        """Elevation above the image plane at the origin, in radians."""
+        x, y, z = self.source
+        return math.atan2(z, math.hypot(x, y))
+
+    def scaled(self, factor: float) -> Lamp:
+        """Return it ``factor`` times as strong."""
+        return replace(self, strength=self.strength * factor)
 
     def at(self, point: Any) -> tuple[Any, Any, Any]:
         """Return (unit direction to the light, distance to it, irradiance / pi facing it) at Mitsuba points."""
@@ -41,59 +58,60 @@ class Lamp:
         float_type = type(point.x)
         vector_type = type(point)
         if self.position is None:
-            assert self.direction is not None
-            x, y, z = (dr.opaque(float_type, v) for v in self.direction)
+            x, y, z = (dr.opaque(float_type, v) for v in self.source)
             return vector_type(x, y, z), dr.full(float_type, 1e9), dr.opaque(float_type, self.strength)
         lamp = vector_type(*(dr.opaque(float_type, v) for v in self.position))
         offset = lamp - point
         squared = dr.squared_norm(offset)
         distance = dr.sqrt(squared)
-        strength = dr.opaque(float_type, self.strength * self.position[2] ** 2)
-        return offset / distance, distance, strength / squared
+        direction = offset / distance
+        strength = dr.opaque(float_type, self.strength * self.position[2] ** 2) / squared
+        if self.axis is not None:
+            along = vector_type(*(dr.opaque(float_type, -v) for v in self.axis))
+            angle = dr.safe_acos(dr.dot(direction, along))
+            edge, inverse = dr.opaque(float_type, self.cone), dr.opaque(float_type, 1.0 / ((1.0 - BEAM) * self.cone))
+            strength = strength * dr.clip((edge - angle) * inverse, 0.0, 1.0)
+        return direction, distance, strength
 
     def on_plane(self, x: NDArray[np.float32], y: NDArray[np.float32]) -> NDArray[np.float32]:
         """Return what a white matt plane z = 0 facing the viewer reflects at (x, y): E n . l over pi."""
         if self.position is None:
-            assert self.direction is not None
-            return np.full(x.shape, self.strength * self.direction[2], dtype=np.float32)
+            return np.full(x.shape, self.strength * self.source[2], dtype=np.float32)
         px, py, pz = self.position
         squared = (x - px) ** 2 + (y - py) ** 2 + pz**2
-        return np.asarray(self.strength * pz**3 / squared**1.5, dtype=np.float32)
+        falloff = self.strength * pz**3 / squared**1.5
+        if self.axis is not None:
+            ax, ay, az = self.axis
+            cosine = ((x - px) * ax + (y - py) * ay - pz * az) / np.sqrt(squared)
+            angle = np.arccos(np.clip(cosine, -1.0, 1.0))
+            falloff = falloff * np.clip((self.cone - angle) / ((1.0 - BEAM) * self.cone), 0.0, 1.0)
+        return np.asarray(falloff, dtype=np.float32)
 
-    @property
-    def elevation(self) -> float:
-        """Elevation above the image plane at the origin, in radians."""
-        x, y, z = self.direction or self.position or (0.0, 0.0, 1.0)
-        return math.atan2(z, math.hypot(x, y))
-
-
-def lamp_of(light: Light, luminance: NDArray[np.float32] | None = None) -> Lamp:
-    """Return the Lamp for a Light of a Setup; a flash without a foot is over the brightest part of ``luminance``.
-
-    Raises InputError for the light "auto", which only a fit can make a direction of.
-    """
-    if light.kind == "directional":
-        return Lamp(direction=light.direction, strength=light.strength)
-    if light.kind == "point":
-        return Lamp(position=light.position, strength=light.strength)
-    if light.kind == "auto":
-        raise InputError(f"The light auto is estimated from a photo, by fit alone: give it as {FORMS_GIVEN}.")
-    u, v = light.foot or (flash_foot(luminance) if luminance is not None else (0.5, 0.5))
-    rows, columns = luminance.shape if luminance is not None else (1, 1)
-    unit = 2.0 / max(rows, columns)
-    return Lamp(
-        position=((u - 0.5) * columns * unit, (0.5 - v) * rows * unit, 2.0 * light.height), strength=light.strength,
-        at_camera=True,
-    )
+    def emitter(self, tint: tuple[float, ...]) -> dict[str, Any]:
+        """Return Mitsuba's dictionary for it, of the colour ``tint``."""
+        if self.position is None:
+            return {
+                "type": "directional", "direction": [-v for v in self.source],
+                "irradiance": _rgb(math.pi * self.strength, tint),
+            }  # fmt: skip
+        intensity = _rgb(math.pi * self.strength * self.position[2] ** 2, tint)
+        if self.axis is None:
+            return {"type": "point", "position": list(self.position), "intensity": intensity}
+        half = math.degrees(self.cone)
+        return {
+            "type": "spot", "to_world": _aimed(self.position, self.axis), "intensity": intensity, "cutoff_angle": half,
+            "beam_width": BEAM * half,
+        }  # fmt: skip
 
 
-def flash_foot(luminance: NDArray[np.float32]) -> tuple[float, float]:
-    """Return where a flash photo is brightest, as fractions (u, v) from the left and the top."""
-    rows, columns = luminance.shape
-    # Full resolution is not needed for a wide blur.
-    step = max(1, max(rows, columns) // 256)
-    small = luminance[::step, ::step]
-    blurred = gaussian_filter(small.astype(np.float64), FOOT_BLUR * max(small.shape), mode="constant")
-    weight = gaussian_filter(np.ones_like(small, dtype=np.float64), FOOT_BLUR * max(small.shape), mode="constant")
-    row, column = np.unravel_index(np.argmax(blurred / weight), small.shape)
-    return (float(column) + 0.5) / small.shape[1], (float(row) + 0.5) / small.shape[0]
+def _rgb(value: float, tint: tuple[float, ...]) -> dict[str, Any]:
+    return {"type": "rgb", "value": [value * c for c in tint]}
+
+
+def _aimed(position: tuple[float, float, float], axis: tuple[float, float, float]) -> Any:
+    """Return the transform of an emitter at ``position`` that looks along ``axis``."""
+    from voldetail.backend import mitsuba
+
+    upright = [0.0, 1.0, 0.0] if abs(axis[1]) < 0.9 else [1.0, 0.0, 0.0]
+    target = [p + a for p, a in zip(position, axis, strict=True)]
+    return mitsuba().ScalarTransform4f().look_at(list(position), target, upright)

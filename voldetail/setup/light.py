@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, ValidationError, field_validator, model_validator
 
 from voldetail.detail.record import Record
 from voldetail.errors import InputError
 from voldetail.records.refusal import refusal, shown
+from voldetail.setup.lamp import Lamp
+from voldetail.setup.lights.kind import LightKind
+from voldetail.setup.lights.table import FORMS, FORMS_GIVEN, LIGHTS, LightName
+from voldetail.setup.lights.vectors import FURTHEST, Vector, angles_of, direction_of, numbers_of
+
+__all__ = [
+    "FORMS", "FORMS_GIVEN", "FURTHEST", "Length", "Light", "Vector", "angles_of", "direction_of", "lamp_of", "light_text",
+    "parse_light",
+]  # fmt: skip
 
 SHORTEST = 1e-12  # a direction shorter than this is zero for the user, and dividing by it is inexact
-FURTHEST = 1000.0  # scene units, 500 proxies away: beyond it a length is a slip of the pen
-
-Vector = tuple[float, float, float]
 Length = Annotated[float, Field(ge=-FURTHEST, le=FURTHEST)]
 _Share = Annotated[float, Field(ge=0, le=1)]
 
@@ -22,7 +30,7 @@ _Share = Annotated[float, Field(ge=0, le=1)]
 class Light(Record):
     """The light: a `direction` (made a unit vector), a `position`, a phone's flash at the camera, or not known yet."""
 
-    kind: Literal["directional", "point", "flash", "auto"] = Field(
+    kind: LightName = Field(
         default="directional", description="The kind of light; auto is estimated from the photo by a fit."
     )
     direction: Vector | None = Field(
@@ -32,8 +40,20 @@ class Light(Record):
     )
     position: tuple[Length, Length, Length] | None = Field(
         default=None,
-        description="Where the lamp is, in scene units; point only.",
+        description="Where the lamp is, in scene units; point and spot only.",
         json_schema_extra={"allowed": f"three numbers x, y, z of at most {FURTHEST:g}, z over 0 but for a medium"},
+    )
+    target: tuple[Length, Length, Length] | None = Field(
+        default=None,
+        description="What the lamp is aimed at, in scene units; spot only.",
+        json_schema_extra={"allowed": f"three numbers x, y, z of at most {FURTHEST:g}"},
+    )
+    angle: float | None = Field(
+        default=None,
+        ge=1,
+        le=85,
+        json_schema_extra={"unit": "degrees"},
+        description="Half the opening of the lamp's cone, in degrees; spot only.",
     )
     foot: tuple[_Share, _Share] | None = Field(
         default=None,
@@ -63,40 +83,29 @@ class Light(Record):
 
     @model_validator(mode="after")
     def _usable(self) -> Light:
-        wanted = {"directional": "direction", "point": "position"}.get(self.kind)
-        if wanted and getattr(self, wanted) is None:
-            raise ValueError(f'a light of kind "{self.kind}" needs its {wanted}: three numbers x, y, z')
-        for name, kind in (("direction", "directional"), ("position", "point"), ("foot", "flash")):
-            if getattr(self, name) is not None and self.kind != kind:
-                raise ValueError(f'{name} belongs to a light of kind "{kind}", but the kind is "{self.kind}"')
+        mine = LIGHTS[self.kind]
+        for name in mine.needed:
+            if getattr(self, name) is None:
+                what = "number of degrees" if name == "angle" else "three numbers x, y, z"
+                raise ValueError(f'a light of kind "{self.kind}" needs its {name}: {what}')
+        for name in dict.fromkeys(name for light in LIGHTS.values() for name in light.own):
+            if name not in mine.own and getattr(self, name) is not None:
+                owners = " or ".join(f'"{light.name}"' for light in LIGHTS.values() if name in light.own)
+                raise ValueError(f'{name} belongs to a light of kind {owners}, but the kind is "{self.kind}"')
         return self
+
+    @property
+    def row(self) -> LightKind:
+        """What its kind does with it."""
+        return LIGHTS[self.kind]
 
     @property
     def behind(self) -> str:
         """Why only a medium can be lit by it, which light passes through; empty where it stands before the surface."""
-        vector = self.direction or self.position
+        vector = self.row.source(self)
         if not vector or vector[2] > 0:
             return ""
         return f"it is behind the surface: z is {vector[2]:g}, and has to be over 0 (to the viewer) but for a medium"
-
-
-FORMS_GIVEN = "AZ,EL in degrees, x,y,z, flash, flash@height, flash@u,v, flash@u,v,height or point:x,y,z"
-FORMS = FORMS_GIVEN + ", or auto to have it estimated"
-
-
-def direction_of(azimuth: float, elevation: float) -> Vector:
-    """The unit vector of a light: (cos el cos az, cos el sin az, sin el), angles in degrees.
-
-    The azimuth runs from +x counter-clockwise in the image plane, the elevation from there to the viewer.
-    """
-    az, el = math.radians(azimuth), math.radians(elevation)
-    return math.cos(el) * math.cos(az), math.cos(el) * math.sin(az), math.sin(el)
-
-
-def angles_of(direction: Vector) -> tuple[float, float]:
-    """Azimuth in [0, 360) and elevation of a direction, in degrees: the inverse of `direction_of`."""
-    x, y, z = direction
-    return math.degrees(math.atan2(y, x)) % 360, math.degrees(math.atan2(z, math.hypot(x, y)))
 
 
 def parse_light(text: str) -> Light:
@@ -105,53 +114,27 @@ def parse_light(text: str) -> Light:
     Raises InputError for another form, a wrong count, NaN or a zero vector.
     """
     word = text.strip()
-    if word in ("flash", "auto"):
-        return _light(text, kind=word)
-    if word.startswith("flash@"):
-        numbers = _numbers(text, word.removeprefix("flash@"), (1, 2, 3))
-        foot = {"foot": tuple(numbers[:2])} if len(numbers) > 1 else {}
-        height = {"height": numbers[-1]} if len(numbers) != 2 else {}
-        return _light(text, kind="flash", **foot, **height)
-    if word.startswith("point:"):
-        return _light(text, kind="point", position=tuple(_numbers(text, word.removeprefix("point:"), (3,))))
-    numbers = _numbers(text, word, (2, 3))
-    if len(numbers) == 3:
-        return _light(text, direction=tuple(numbers))
-    azimuth, elevation = numbers
-    if abs(elevation) > 90 or abs(azimuth) > 360:
-        raise InputError(
-            f"The light {shown(text)} is out of range: azimuth is -360 to 360 and elevation over 0 to 90 degrees, or, for a"
-            " medium, -90 to 90."
-        )
-    return _light(text, direction=direction_of(azimuth, elevation))
+
+    def numbers(listed: str, counts: tuple[int, ...]) -> list[float]:
+        return numbers_of(text, listed, counts, FORMS)
+
+    for light in LIGHTS.values():
+        if (fields := light.fields(word, numbers)) is not None:
+            return _light(text, kind=light.name, **fields)
+    raise InputError(f"The light {shown(text)} is not understood; use {FORMS}.")
 
 
 def light_text(light: Light) -> str:
     """`light` in the form that `parse_light` reads, numbers to 7 digits; the strength is left out."""
-    if light.direction:
-        return ",".join(f"{a:.7g}" for a in angles_of(light.direction))
-    if light.position:
-        return "point:" + ",".join(f"{a:.7g}" for a in light.position)
-    if light.kind == "auto":
-        return "auto"
-    if light.foot:
-        return f"flash@{light.foot[0]:.7g},{light.foot[1]:.7g},{light.height:.7g}"
-    return f"flash@{light.height:.7g}"
+    return light.row.text(light)
 
 
-def _numbers(text: str, listed: str, counts: tuple[int, ...]) -> list[float]:
-    try:
-        numbers = [float(part) for part in listed.split(",")]
-    except ValueError:
-        raise InputError(f"The light {shown(text)} is not understood; use {FORMS}.") from None
-    if not all(map(math.isfinite, numbers)):
-        raise InputError(f"The light {shown(text)} holds a number that is not finite; use {FORMS}.")
-    if len(numbers) not in counts:
-        wanted = " or ".join(map(str, counts))
-        raise InputError(
-            f"The light {shown(text)} has {len(numbers)} numbers where {wanted} are wanted; use {FORMS}."
-        )
-    return numbers
+def lamp_of(light: Light, luminance: NDArray[np.float32] | None = None) -> Lamp:
+    """Return the Lamp for a Light of a Setup; a flash without a foot is over the brightest part of ``luminance``.
+
+    Raises InputError for the light "auto", which only a fit can make a direction of.
+    """
+    return light.row.lamp(light, luminance)
 
 
 def _light(text: str, **fields: Any) -> Light:

@@ -12,24 +12,17 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from voldetail.detail.parameters import declared, nearest, parameter
+from voldetail.detail.parameters import declared, parameter
 from voldetail.detail.record import LARGEST_SEED, Record
+from voldetail.image.examples import NAMES, PREFIX
+from voldetail.records.nearest import nearest
 from voldetail.setup.light import FURTHEST, Length, Light, Vector
+from voldetail.setup.shapes import SHAPES, ShapeKind, ShapeRow
 
 __all__ = ["CameraSetup", "FitSettings", "Light", "PhotoSetup", "ProxySetup", "Setup", "Vector"]
 
-SKIMAGE_PREFIX = "skimage:"
-SKIMAGE_PHOTOS = ("gravel", "grass", "brick")  # the photographs of real surfaces that scikit-image ships
 
 SMALLEST_ZONE = 32  # pixels: the metric's 8-pixel window on the third level of its pyramid, 8 * 2**2
-DEFAULT_SIZES: dict[str, tuple[float, float, float]] = {
-    "plane": (2.0, 2.0, 0.0),
-    "sphere": (2.0, 2.0, 2.0),
-    "ellipsoid": (2.0, 1.5, 1.5),
-    "box": (2.0, 2.0, 2.0),
-    "cylinder": (1.5, 2.0, 1.5),
-    "mesh": (2.0, 2.0, 2.0),
-}
 DEFAULT_FIELD_OF_VIEW = 40.0  # degrees, about a 50 mm lens on 35 mm film
 ORTHOGRAPHIC_DISTANCE = 4.0  # scene units; any value in front of the proxy gives the same picture
 
@@ -67,7 +60,7 @@ class PhotoSetup(Record):
     @property
     def skimage(self) -> str | None:
         """The name of the scikit-image photograph, or None for a file."""
-        return self.path.removeprefix(SKIMAGE_PREFIX) if self.path.startswith(SKIMAGE_PREFIX) else None
+        return self.path.removeprefix(PREFIX) if self.path.startswith(PREFIX) else None
 
     @property
     def name(self) -> str:
@@ -76,9 +69,9 @@ class PhotoSetup(Record):
 
     @model_validator(mode="after")
     def _usable(self) -> PhotoSetup:
-        if self.skimage is not None and self.skimage not in SKIMAGE_PHOTOS:
+        if self.skimage is not None and self.skimage not in NAMES:
             raise ValueError(
-                f"there is no photo {self.path[:60]!r}; {nearest(self.skimage, list(SKIMAGE_PHOTOS))}"
+                f"there is no photo {self.path[:60]!r}; {nearest(self.skimage, list(NAMES))}"
             )
         if self.zone and min(self.zone[2:]) < SMALLEST_ZONE:
             size = f"{self.zone[2]} x {self.zone[3]}"
@@ -89,7 +82,7 @@ class PhotoSetup(Record):
 class ProxySetup(Record):
     """The simple shape that stands for the object: `size` None means the kind's own (see `extent`)."""
 
-    kind: Literal["plane", "sphere", "ellipsoid", "box", "cylinder", "mesh"] = Field(
+    kind: ShapeKind = Field(
         default="plane", description="The kind of shape; a plane faces the camera."
     )
     mesh: Path | None = Field(default=None, description="The mesh file, for the kind mesh only.")
@@ -110,17 +103,22 @@ class ProxySetup(Record):
     )
 
     @property
+    def row(self) -> ShapeRow:
+        """What a setup knows of the kind."""
+        return SHAPES[self.kind]
+
+    @property
     def extent(self) -> Vector:
         """Width, height and depth in scene units: as given, or the kind's default."""
-        return self.size or DEFAULT_SIZES[self.kind]
+        return self.size or self.row.size
 
     @model_validator(mode="after")
     def _usable(self) -> ProxySetup:
-        if self.kind == "mesh" and self.mesh is None:
-            raise ValueError('the kind "mesh" needs the path of a mesh file as proxy.mesh')
-        if self.kind != "mesh" and self.mesh is not None:
+        if self.row.of_file and self.mesh is None:
+            raise ValueError(f'the kind "{self.kind}" needs the path of a mesh file as proxy.mesh')
+        if not self.row.of_file and self.mesh is not None:
             raise ValueError(f'a mesh file is given but the kind is "{self.kind}"; set proxy.kind to "mesh"')
-        thick = 2 if self.kind == "plane" else 3  # a plane has no depth
+        thick = 2 if self.row.flat else 3  # a plane has no depth
         if self.size and not (
             min(self.size[:thick]) > 0 and self.size[2] >= 0 and max(self.size) <= FURTHEST
         ):
@@ -128,6 +126,8 @@ class ProxySetup(Record):
                 f"the size {','.join(f'{v:g}' for v in self.size)} has to be over 0 and at most"
                 f" {FURTHEST:g} scene units each way"
             )
+        if refused := self.row.refused(self.extent):
+            raise ValueError(refused)
         return self
 
 
@@ -235,7 +235,7 @@ class Setup(Record):
 
     @model_validator(mode="after")
     def _volume(self) -> Setup:
-        if self.photo.stationarize and (self.proxy.kind != "plane" or self.medium):
+        if self.photo.stationarize and (not self.proxy.row.flat or self.medium):
             raise ValueError("an even picture can be made of a flat surface alone: leave stationarize out, or the proxy a plane")
         if self.mode == "displacement" and self.look == "medium":
             raise ValueError('the look "medium" needs the mode "volume"; a displaced surface is solid')

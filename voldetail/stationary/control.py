@@ -63,14 +63,14 @@ def palette(
         if on_progress is not None:
             on_progress(number, rounds * len(chosen), progress)
 
-    made = _series(photo, size, chosen, tell, options)
-    if not even or made.interrupted:
-        return made
-    evener = even_sigmas(chosen, made.distances, len(chosen))
+    series = _series(photo, size, chosen, tell, options)
+    if not even or series.interrupted:
+        return series
+    evener = even_sigmas(chosen, series.distances, len(chosen))
     try:
         return _series(photo, size, evener, lambda number, progress: tell(len(chosen) + number, progress), options)
     except KeyboardInterrupt:  # before there was one of the new tiles
-        return replace(made, interrupted=True)
+        return replace(series, interrupted=True)
 
 
 def _series(

@@ -104,7 +104,7 @@ def _facing(vector: Floats) -> Floats:
 
 
 def _channel(
-    values: NDArray[np.float32], used: NDArray[np.bool_] | None, shape: tuple[int, int], match_histogram: bool,
+    values: NDArray[np.float32], inside: NDArray[np.bool_] | None, shape: tuple[int, int], match_histogram: bool,
     directed: bool | None,
 ) -> ColourChannel:
     mean, deviation = float(values.mean(dtype=np.float64)), float(values.std(dtype=np.float64))
@@ -116,15 +116,15 @@ def _channel(
         curve = fitted_curve(quantiles, mean, deviation)
     else:
         z, curve = (values - np.float32(mean)) / np.float32(deviation), gaussian_curve(mean, deviation)
-    if used is None:
+    if inside is None:
         picture = np.asarray(z, np.float32).reshape(shape)
     else:
         picture = np.zeros(shape, np.float32)
-        picture[used] = z
+        picture[inside] = z
     curve = np.maximum.accumulate(curve)
-    if directed or (directed is None and _has_direction(picture, used)):
-        return ColourChannel(weights=(), lobes=lobes_of(picture.astype(np.float64), used), curve=tuple(curve.tolist()))
-    weights = weights_of(band_powers(picture, used), shape)
+    if directed or (directed is None and _has_direction(picture, inside)):
+        return ColourChannel(weights=(), lobes=lobes_of(picture.astype(np.float64), inside), curve=tuple(curve.tolist()))
+    weights = weights_of(band_powers(picture, inside), shape)
     if not weights.any():
         # All of the variance is slower than the photo is long, by the solution's reckoning: the slowest band has it.
         weights[-1] = 1.0
@@ -160,19 +160,19 @@ def _checked(
             f"The photo has {columns} x {rows} pixels; at least {SMALLEST_SIDE} a side are needed, so give a larger part of it."
         )
     if mask is None:
-        used = None
+        inside = None
     else:
-        used = np.asarray(mask)
-        if used.shape != (rows, columns):
-            raise InputError(f"The mask has the shape {used.shape} and the photo {(rows, columns)}; give one of its size.")
-        used = used.astype(bool)
-        count = int(np.count_nonzero(used))
+        inside = np.asarray(mask)
+        if inside.shape != (rows, columns):
+            raise InputError(f"The mask has the shape {inside.shape} and the photo {(rows, columns)}; give one of its size.")
+        inside = inside.astype(bool)
+        count = int(np.count_nonzero(inside))
         if count < FEWEST_PIXELS:
             raise InputError(f"The mask leaves {count} pixels of the photo; at least {FEWEST_PIXELS} are needed, so mask less.")
-        if count == used.size:
-            used = None
-    if not np.isfinite(pixels if used is None else pixels[used]).all():
+        if count == inside.size:
+            inside = None
+    if not np.isfinite(pixels if inside is None else pixels[inside]).all():
         raise InputError("The photo has pixels that are NaN or infinite; repair them or leave them out with a mask.")
-    if used is not None:
-        pixels = np.where(used[..., None], pixels, np.float32(0.0))
-    return pixels, used
+    if inside is not None:
+        pixels = np.where(inside[..., None], pixels, np.float32(0.0))
+    return pixels, inside

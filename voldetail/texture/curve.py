@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 
 OUTERMOST = 3.2
 """The outer samples' place in deviations of the noise: probabilities 0.0007 and 0.9993. Tuned on 58 channels of the
-photographs in ../shared/data: the mean error of the round trip is 2.9 % of the deviation, against 3.6 % at 2.6, 2.9 % at
+photographs: the mean error of the round trip is 2.9 % of the deviation, against 3.6 % at 2.6, 2.9 % at
 3.5, and 10.5 % for a cubic over equally spaced probabilities."""
 
 PLACES = np.linspace(-OUTERMOST, OUTERMOST, CURVE_SAMPLES)

@@ -56,17 +56,6 @@ def lobe_rows(lobes: Sequence[Lobe]) -> NDArray[np.float64]:
     )
 
 
-def lobes_power(lobes: Sequence[Lobe], fx: NDArray[np.float64], fy: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return S(f), variance per (cycle per texel)^2, of the lobes' sum at the frequencies ``fx``, ``fy`` (one shape)."""
-    total = np.zeros(np.broadcast_shapes(fx.shape, fy.shape))
-    for frequency, angle, along, across, variance in lobe_rows(lobes):
-        c, s = math.cos(angle), math.sin(angle)
-        u, w = fx * c + fy * s, (fy * c - fx * s) / across
-        halves = np.exp(-0.5 * ((u - frequency) / along) ** 2) + np.exp(-0.5 * ((u + frequency) / along) ** 2)
-        total += variance / (4 * math.pi * along * across) * halves * np.exp(-0.5 * w**2)
-    return total
-
-
 def _kept(bins: Bins, pairs: Pairs) -> Pairs:
     """Return the pairs without those that hardly count."""
     good = pairs.share >= min(LEAST_SHARE, pairs.share.max())

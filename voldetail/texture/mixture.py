@@ -114,12 +114,6 @@ def fit_pairs(bins: Bins, start: Pairs, least: float, rounds: int = ROUNDS) -> P
     return pairs
 
 
-def divergence(bins: Bins, pairs: Pairs) -> float:
-    """Return sum_n p_n log(1 / density_n), nats: the Kullback-Leibler divergence but for what no pairs can change."""
-    plus, minus = _halves(bins, pairs)
-    return float(-(bins.power * np.log(np.maximum(plus.sum(1) + minus.sum(1), TINY))).sum())
-
-
 def _halves(bins: Bins, pairs: Pairs) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the densities (N, K) of both halves at the bins' centroids, times their shares."""
     c, s = np.cos(pairs.angle), np.sin(pairs.angle)

@@ -40,7 +40,7 @@ def picture(
         raise InputError(f"A picture of {columns} x {rows} pixels cannot be made; 1 to {MOST_PIXELS} pixels are allowed.")
     if not (np.isfinite(zoom) and zoom > 0):
         raise InputError(f"The zoom {zoom} is out of range; it is the pixels a texel, a number over 0.")
-    made = np.empty((rows, columns, 3), np.float32)
+    pixels = np.empty((rows, columns, 3), np.float32)
     float_type = float_type or default_float()
     footprint = texels_footprint(1.0 / zoom)
     height = max(1, strip_pixels // columns)
@@ -52,8 +52,8 @@ def picture(
         colour = colour_at(texture, (*points, dr.zeros(float_type, dr.width(points[0]))) if solid else points, footprint)
         dr.eval(colour)
         for k in range(3):
-            made[top : top + height, :, k] = colour[k].numpy().reshape(len(part), columns)
-    return made
+            pixels[top : top + height, :, k] = colour[k].numpy().reshape(len(part), columns)
+    return pixels
 
 
 def texels_footprint(side: float) -> float:

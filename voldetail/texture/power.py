@@ -109,8 +109,3 @@ def weights_of(powers: Floats, shape: tuple[int, int], share: float = TAPER) -> 
     rows = np.concatenate([matrix * certainty[:, None], smooth])
     squares, _ = nnls(rows, np.concatenate([powers * certainty, np.zeros(len(smooth))]))
     return np.sqrt(squares)
-
-
-def direct_weights(powers: Floats) -> Floats:
-    """Return w_b by eq. 12 alone, without the leak: what `weights_of` is compared with."""
-    return np.sqrt(powers / variance(2))

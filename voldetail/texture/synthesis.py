@@ -159,14 +159,14 @@ class Evaluator:
         along = along - self.float_type(column)
         first = self.uint_type(channel * ROWS * COLUMNS) + column
         if removed is None:
-            found = self._between(first, along)
-            return found[0], None
+            value = self._between(first, along)
+            return value[0], None
         down = dr.clip(removed * (ROWS - 1.0), 0.0, ROWS - 1.0)
         row = dr.minimum(self.uint_type(down), ROWS - 2)
         down = down - self.float_type(row)
         above, below = (self._between(first + (row + k) * COLUMNS, along) for k in (0, 1))
-        found = dr.fma(below - above, self.pair(down), above)
-        return found[0], found[1]
+        value = dr.fma(below - above, self.pair(down), above)
+        return value[0], value[1]
 
     def _between(self, index: Any, along: Any) -> Any:
         low, high = (dr.gather(self.pair, self.curves, index + k) for k in (0, 1))
@@ -186,10 +186,10 @@ def band_total(texture: ColourTexture) -> int:
 
 def band_amplitudes(texture: ColourTexture, dims: int) -> Any:
     """Return w_ci / s_c (bands, 4) in 2 or 3 dimensions: the noise that they weigh has unit variance; the fourth is 0."""
-    found = np.zeros((max(band_total(texture), 1), 4), np.float64)
+    amplitudes = np.zeros((max(band_total(texture), 1), 4), np.float64)
     for c, channel in enumerate(texture.channels):
         weights = np.asarray(slice_weights(channel.weights) if dims == 3 else channel.weights)
         deviation = float(np.sqrt(variance(dims) * np.sum(weights**2)))
         if deviation > 0:
-            found[: len(weights), c] = weights / deviation
-    return found
+            amplitudes[: len(weights), c] = weights / deviation
+    return amplitudes

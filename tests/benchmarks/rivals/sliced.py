@@ -37,7 +37,7 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
 
 def compare(a: Array, b: Array, basis: Array | None, /) -> float:
     """Mean over directions, in the reference's deviations."""
-    return wasserstein(a, b, basis)
+    return float(wasserstein(a, b, basis))
 
 
 def _vectors(layers: Layers) -> Parts:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from voldetail.errors import InputError
-from voldetail.fit.target import Target
 from voldetail.fit.warmstart.light import direction_at_zone
 from voldetail.fit.warmstart.nearest import nearest_reliefs
 from voldetail.fit.warmstart.source import ELEVATIONS, ENTRIES, ReliefSource
@@ -16,6 +15,7 @@ from voldetail.library.building.build import BuildProgress
 from voldetail.library.cache import cached
 from voldetail.library.groups import Series
 from voldetail.library.store import Library, open_library
+from voldetail.results import Target
 from voldetail.setup.setup import Setup
 from voldetail.setup.view import view_of
 
@@ -57,7 +57,7 @@ def starts_from(
 
 
 def _nearest_series(library: Library, elevation: float) -> Series:
-    """The series whose light is nearest, if it is of this voldetail's looks."""
+    """The series whose light is nearest, if it is of this voldetail's reliefs."""
     where = f"The library {library.header.path}"
     if not library.series:
         raise InputError(f"{where} has no reliefs but structures; give one made by voldetail library build relief.")
@@ -81,12 +81,12 @@ def elevations_of(names: Sequence[str]) -> list[int]:
 
     Raises InputError for another.
     """
-    known = {f"relief-{at}": at for at in ELEVATIONS}
-    found: list[int] = []
+    by_name = {f"relief-{at}": at for at in ELEVATIONS}
+    elevations: list[int] = []
     for name in names:
         if not name.startswith("relief"):
             raise InputError(f"A library has either structures or reliefs; build one for {name[:60]!r} apart.")
-        if name != "relief" and name not in known:
-            raise InputError(f"There are no reliefs {name[:60]!r}; relief (all) and {', '.join(known)} are known.")
-        found += list(ELEVATIONS) if name == "relief" else [known[name]]
-    return list(dict.fromkeys(found))
+        if name != "relief" and name not in by_name:
+            raise InputError(f"There are no reliefs {name[:60]!r}; relief (all) and {', '.join(by_name)} are known.")
+        elevations += list(ELEVATIONS) if name == "relief" else [by_name[name]]
+    return list(dict.fromkeys(elevations))

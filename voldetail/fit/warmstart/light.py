@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import rotate
 
-from voldetail.fit.target import Target
 from voldetail.fit.warmstart.reliefs import SIDE
 from voldetail.image import resize
+from voldetail.results import Target
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.view import View
 
@@ -33,11 +33,8 @@ class Turned:
 
 def direction_at_zone(lamp: Lamp, view: View) -> tuple[float, float]:
     """Return azimuth and elevation, radians, of the light at the middle of the zone; a near one is taken for distant."""
-    if lamp.position is None:
-        assert lamp.direction is not None
-        x, y, z = lamp.direction
-    else:
-        x, y, z = lamp.position
+    x, y, z = lamp.source
+    if lamp.near:
         x, y = x - 0.5 * (view.left + view.right), y - 0.5 * (view.bottom + view.top)
     return math.atan2(y, x), math.atan2(z, math.hypot(x, y))
 
@@ -49,11 +46,11 @@ def turned(target: Target, azimuth: float) -> Turned:
     """
     quarters = round(azimuth / (math.pi / 2))
     rest = math.degrees(azimuth) - 90.0 * quarters
-    picture, used = np.rot90(target.luminance, -quarters), np.rot90(target.mask, -quarters).astype(np.float32)
+    picture, inside = np.rot90(target.luminance, -quarters), np.rot90(target.mask, -quarters).astype(np.float32)
     factor = SIDE / max(picture.shape)
     if abs(rest) > 0.5:
-        picture, used = (rotate(a, -rest, order=1, reshape=True, cval=0.0) for a in (picture, used))
+        picture, inside = (rotate(a, -rest, order=1, reshape=True, cval=0.0) for a in (picture, inside))
     size = (max(1, round(picture.shape[0] * factor)), max(1, round(picture.shape[1] * factor)))
     small = resize(np.ascontiguousarray(picture, np.float32), size)
-    mask = resize(np.ascontiguousarray(used, np.float32), size) > WHOLE
+    mask = resize(np.ascontiguousarray(inside, np.float32), size) > WHOLE
     return Turned(small, None if mask.all() else mask)

@@ -1,4 +1,4 @@
-"""Rows of the relief library: looks rendered under one light, brought to one exposure and described."""
+"""Vectors of the relief library: reliefs rendered under one light, brought to one exposure and described."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from voldetail.backend import mitsuba
 from voldetail.fit.warmstart.exposure import exposed
-from voldetail.fit.warmstart.reliefs import FINE, SIDE, Look
+from voldetail.fit.warmstart.reliefs import FINE, SIDE, LibraryRelief
 from voldetail.metric import Descriptor, describe
-from voldetail.metric.vector import row_of
+from voldetail.metric.vector import combined_vector
 from voldetail.render.build import build
 from voldetail.render.unit_components import Components, components
 from voldetail.setup.file import setup_from
-from voldetail.setup.lamp import lamp_of
+from voldetail.setup.light import lamp_of
 
 AMBIENT, DIFFUSE = 0.3, 0.6
 """Ka and Kd of the pictures. Only their ratio counts, and the fit solves for both: shadows half filled were ordered more like the
@@ -29,8 +29,8 @@ SUBSAMPLES = 2
 """Squared samples a pixel, a fit's own number."""
 
 
-def rows(looks: Iterable[Look], elevation: float) -> Iterator[NDArray[np.float16]]:
-    """Yield the row of each look (L,), lit from the right at ``elevation`` degrees above the plane.
+def vectors(reliefs: Iterable[LibraryRelief], elevation: float) -> Iterator[NDArray[np.float16]]:
+    """Yield the vector of each relief (L,), lit from the right at ``elevation`` degrees above the plane.
 
     While one is described, by NumPy in one thread, the next is rendered, by Dr.Jit in all.
     """
@@ -42,8 +42,8 @@ def rows(looks: Iterable[Look], elevation: float) -> Iterator[NDArray[np.float16
     surface, lamp = build(setup, (FINE, FINE), (0, 0, FINE, FINE)), lamp_of(setup.light)
     with ThreadPoolExecutor(1) as worker:
         waiting: Future[NDArray[np.float16]] | None = None
-        for look in looks:
-            surface.update(look.detail())
+        for relief in reliefs:
+            surface.update(relief.detail())
             parts = components(surface, lamp, subsamples=SUBSAMPLES, shininess=SHININESS)
             if waiting is not None:
                 yield waiting.result()
@@ -54,7 +54,7 @@ def rows(looks: Iterable[Look], elevation: float) -> Iterator[NDArray[np.float16
 
 def _described(parts: Components, reference: Descriptor) -> NDArray[np.float16]:
     picture = exposed(parts.luminance(AMBIENT, DIFFUSE, 0.0, SHININESS[0]))
-    return row_of(describe(picture, like=reference)).astype(np.float16)
+    return combined_vector(describe(picture, like=reference)).astype(np.float16)
 
 
 def _reference() -> Descriptor:

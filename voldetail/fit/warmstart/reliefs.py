@@ -1,6 +1,6 @@
-"""The reliefs of the library: look k is the same whoever asks for it, and whenever.
+"""The reliefs of the library: relief k is the same whoever asks for it, and whenever.
 
-Half of the looks are those that nature repeats (fit.archetypes), moved about at random; the other half covers the families
+Half of the reliefs are those that nature repeats (fit.archetypes), moved about at random; the other half covers the families
 evenly. All are seen through one window, and numbers that are lengths are given in its own unit, see `seen_through`.
 """
 
@@ -32,23 +32,23 @@ SPACE = Space(
     domain="solid", scale=(1.0 / (LARGEST_CELL * WINDOW), FINE / (SMALLEST_CELL * WINDOW)),
     finest=FINE / (FINEST_OCTAVE * WINDOW),
 )  # fmt: skip
-"""The space of a fit of a whole photo, see `fit.shown.space_of`."""
+"""The space of a fit of a whole photo, see `fit.resolvable.space_of`."""
 
 SPREAD = 0.12
-"""Deviation by which numbers are moved, of their ranges: neighbouring scales of one look just meet."""
+"""Deviation by which numbers are moved, of their ranges: neighbouring scales of one relief just meet."""
 
 STRETCH = 0.15
 """The same for the anisotropy, about round cells."""
 
 MOST = 1 << 16
-"""Looks that there are at most: the points of the sequence that covers the families."""
+"""Reliefs that there are at most: the points of the sequence that covers the families."""
 
 LENGTHS = ("noise.scale", "reflectance.speckle_scale")
 """Numbers in cells per scene unit, which a smaller window makes finer."""
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class LibraryRelief:
     """One relief: its kind, a vector of `SPACE`, the seed of its noise."""
 
     kind: Kind
@@ -60,8 +60,8 @@ class Look:
         return SPACE.decode(self.kind, self.vector).model_copy(update={"seed": self.seed})
 
 
-def look(k: int, seed: int = 0) -> Look:
-    """Return look ``k``, 0 to MOST - 1. The light comes from the right; the angle is from 0 to pi / 2 from it, since the rest
+def library_relief(k: int, seed: int = 0) -> LibraryRelief:
+    """Return relief ``k``, 0 to MOST - 1. The light comes from the right; the angle is from 0 to pi / 2 from it, since the rest
     are mirror pictures."""
     rng = np.random.Generator(np.random.PCG64([seed, k]))
     first = _first(k, seed)
@@ -72,33 +72,33 @@ def look(k: int, seed: int = 0) -> Look:
     stretch = names.index("stone_stretch" if first.kind.stones else "noise.anisotropy")
     vector[stretch] = np.clip(0.5 + STRETCH * rng.standard_normal(), 0.0, 1.0)
     vector[names.index("noise.angle")] = 0.5 * rng.random()
-    return Look(first.kind, vector, derived_seed(seed, f"look/{k}"))
+    return LibraryRelief(first.kind, vector, derived_seed(seed, f"look/{k}"))
 
 
-def seen_through(found: Look, window: float, turned: float, mirrored: bool) -> Start:
-    """Return ``found`` as a start for a fit whose zone is ``window`` scene units wide, lit from ``turned`` (radians).
+def seen_through(relief: LibraryRelief, window: float, turned: float, mirrored: bool) -> Start:
+    """Return ``relief`` as a start for a fit whose zone is ``window`` scene units wide, lit from ``turned`` (radians).
 
     mirrored: on the other side of the light's direction.
     """
     values = {
-        name: SPACE.at(name, float(unit)) for name, unit in zip(SPACE.names(found.kind), found.vector, strict=True)
+        name: SPACE.at(name, float(unit)) for name, unit in zip(SPACE.names(relief.kind), relief.vector, strict=True)
     }
     for name in LENGTHS:
         if name in values:
             values[name] *= WINDOW / window
     angle = values["noise.angle"]
     values["noise.angle"] = (turned + (-angle if mirrored else angle)) % np.pi
-    return Start(found.kind, values)
+    return Start(relief.kind, values)
 
 
 def _first(k: int, seed: int) -> Candidate:
-    """The point that look ``k`` is near to."""
+    """The point that relief ``k`` is near to."""
     repeated, covering = _points(seed, 1 << max(k // 2 + 1, 255).bit_length())
     return repeated[k // 2 % len(repeated)] if k % 2 == 0 else covering[k // 2]
 
 
 @lru_cache(maxsize=4)
 def _points(seed: int, count: int) -> tuple[list[Candidate], list[Candidate]]:
-    """The looks that nature repeats, and the first ``count`` that cover the families (more do not change the first)."""
+    """The reliefs that nature repeats, and the first ``count`` that cover the families (more do not change the first)."""
     round_cells = (1.0, 0.0)
     return archetypes(SPACE, round_cells), sampled(SPACE, count, derived_seed(seed, "cover"), round_cells)

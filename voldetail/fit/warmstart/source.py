@@ -1,4 +1,4 @@
-"""The relief library's source: looks under one light, so that a library is built light by light as they are needed."""
+"""The relief library's source: reliefs under one light, so that a library is built light by light as they are needed."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import numpy as np
 
 from voldetail.detail import Detail
 from voldetail.fit.warmstart.exposure import BEYOND, SHARES, TONES
-from voldetail.fit.warmstart.pictures import AMBIENT, DIFFUSE, SUBSAMPLES, rows
-from voldetail.fit.warmstart.reliefs import FINE, MOST, SIDE, WINDOW, look
+from voldetail.fit.warmstart.pictures import AMBIENT, DIFFUSE, SUBSAMPLES, vectors
+from voldetail.fit.warmstart.reliefs import FINE, MOST, SIDE, WINDOW, library_relief
 from voldetail.library.building.source import Chunk
 from voldetail.library.measures import MeasureName
 
@@ -21,18 +21,18 @@ ELEVATIONS = tuple(range(10, 91, 10))
 """Degrees above the plane of the lights that there are libraries for: a photo's light is within five of one."""
 
 ENTRIES = 4000
-"""Looks for each light: with half as many, grass had no near one, and twice as many were no nearer (grass, brick and slab)."""
+"""Reliefs for each light: with half as many, grass had no near one, and twice as many were no nearer (grass, brick and slab)."""
 
 PICTURES_VERSION = 1
 """Counts changes of the pictures that no number in a source's definition tells."""
 
 SAMPLED = 64
-"""Looks whose numbers stand for all in a source's definition: what decides looks is spread over the fit's ranges."""
+"""Reliefs whose numbers stand for all in a source's definition: what decides reliefs is spread over the fit's ranges."""
 
 
 @dataclass(frozen=True)
 class ReliefSource:
-    """Looks rendered under a light from the right at ``elevation`` degrees; see `looks` and `pictures`."""
+    """Reliefs rendered under a light from the right at ``elevation`` degrees; see `reliefs` and `pictures`."""
 
     elevation: int
     seed: int = 0
@@ -44,8 +44,8 @@ class ReliefSource:
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """Some of a detail's numbers, by which a look is told; the look itself follows from its number."""
-        return tuple(_numbers(look(0, self.seed).detail()))
+        """Some of a detail's numbers, by which a relief is recognised; the relief itself follows from its number."""
+        return tuple(_numbers(library_relief(0, self.seed).detail()))
 
     @property
     def measure(self) -> MeasureName:
@@ -54,16 +54,16 @@ class ReliefSource:
 
     @property
     def most(self) -> int:
-        """How many looks there are at most."""
+        """How many reliefs there are at most."""
         return MOST
 
     @property
     def definition(self) -> dict[str, Any]:
-        """The light, what the pictures are made with, and a hash of the first looks."""
+        """The light, what the pictures are made with, and a hash of the first reliefs."""
         return {
             "kind": "relief", "elevation": self.elevation, "side": SIDE, "window": WINDOW, "fine": FINE, "subsamples": SUBSAMPLES,
             "ambient": AMBIENT, "diffuse": DIFFUSE, "tones": [list(SHARES), list(TONES), BEYOND],
-            "looks": _first_looks(self.seed), "version": PICTURES_VERSION,
+            "looks": _hash_of_first(self.seed), "version": PICTURES_VERSION,
         }  # fmt: skip
 
     @property
@@ -72,10 +72,10 @@ class ReliefSource:
         return False
 
     def chunk(self, first: int, count: int) -> Chunk:
-        """Return looks first to first + count - 1."""
-        looks = [look(k, self.seed) for k in range(first, first + count)]
-        values = np.array([list(_numbers(one.detail()).values()) for one in looks], np.float64)
-        return values, np.stack(list(rows(looks, float(self.elevation))))
+        """Return reliefs first to first + count - 1."""
+        reliefs = [library_relief(k, self.seed) for k in range(first, first + count)]
+        values = np.array([list(_numbers(one.detail()).values()) for one in reliefs], np.float64)
+        return values, np.stack(list(vectors(reliefs, float(self.elevation))))
 
 
 def _numbers(detail: Detail) -> dict[str, float]:
@@ -88,8 +88,8 @@ def _numbers(detail: Detail) -> dict[str, float]:
 
 
 @lru_cache(maxsize=4)
-def _first_looks(seed: int) -> str:
-    details = [look(k, seed).detail().model_dump(mode="json", exclude={"provenance"}) for k in range(SAMPLED)]
+def _hash_of_first(seed: int) -> str:
+    details = [library_relief(k, seed).detail().model_dump(mode="json", exclude={"provenance"}) for k in range(SAMPLED)]
     # Nine digits: the last ones of a power or a sine may be another processor's.
     plain = json.dumps(details, sort_keys=True, default=str)
     rounded = json.dumps(json.loads(plain, parse_float=lambda text: f"{float(text):.9g}"), sort_keys=True)

@@ -91,13 +91,13 @@ class _Worker:
     def answer(self) -> Chunk | None:
         """What it computed, None where it died. Raises what its source raised."""
         try:
-            found: Any = self.pipe.recv()
+            chunk: Any = self.pipe.recv()
         except (EOFError, OSError):
             return None
         self.task = None
-        if isinstance(found, BaseException):
-            raise found
-        return found
+        if isinstance(chunk, BaseException):
+            raise chunk
+        return chunk
 
     def stop(self) -> None:
         self.process.kill()

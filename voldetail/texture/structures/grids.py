@@ -34,15 +34,15 @@ def _lines(x: Any, period: float, width: float, softness: float, irregular: floa
     """Lines at whole multiples of ``period``, each moved its own way."""
     f = functions(x)
     near = f.floor(x / period + 0.5)
-    found: Any = None
+    lines: Any = None
     # A moved line may be nearest from the next place as well.
     for step in (-1.0, 0.0, 1.0) if irregular else (0.0,):
         line = near + step
         shift = (cell_words(line, 0.0 * line, seed)[0] - 0.5) * (2 * WIDEST_SHIFT * irregular * period)
         distance = x - line * period - shift
         distance = f.maximum(distance, -distance)
-        found = distance if found is None else f.minimum(found, distance)
-    return edge(found - 0.5 * width, softness)
+        lines = distance if lines is None else f.minimum(lines, distance)
+    return edge(lines - 0.5 * width, softness)
 
 
 def _grid(x: Any, y: Any, values: Values, seed: int) -> Any:

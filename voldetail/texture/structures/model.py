@@ -65,11 +65,6 @@ class StructureModel:
     evaluate: Callable[[Any, Any, Values, int], Any]
 
     @property
-    def defaults(self) -> dict[str, float]:
-        """The default of every parameter."""
-        return {p.key: p.default for p in self.parameters}
-
-    @property
     def grid_size(self) -> int:
         """How many entries a grid over all stops has."""
         count = 1
@@ -86,7 +81,7 @@ class StructureModel:
         for key in values:
             if key not in known:
                 raise InputError(f"The model {self.name} has no parameter {key!r}; it has {', '.join(known)}.")
-        found = {}
+        within = {}
         for parameter in self.parameters:
             value = float(values.get(parameter.key, parameter.default))
             whole = parameter.spread != "integer" or value == int(value)
@@ -95,5 +90,5 @@ class StructureModel:
                 raise InputError(
                     f"{self.name}: {parameter.key} is {value:g}; {kind}{parameter.lower:g} to {parameter.upper:g} is allowed."
                 )
-            found[parameter.key] = value
-        return found
+            within[parameter.key] = value
+        return within

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from noise_reference import highest_grain as reference
+from noise_reference import highest_stone as reference
 from scipy.stats import kstest
 
 from voldetail.backend import mitsuba
@@ -15,8 +15,8 @@ mi: ModuleType = mitsuba()  # before Dr.Jit is imported, which would pick an LLV
 import drjit as dr  # noqa: E402
 from drjit.llvm.ad import Float64  # noqa: E402
 
-from voldetail.noise import GrainShape, NoiseSettings, nearest_points, number_of, relief_function  # noqa: E402
-from voldetail.noise.stones import GRAIN_RADIUS, highest_grain  # noqa: E402
+from voldetail.noise import NoiseSettings, StoneShape, nearest_points, number_of, relief_function  # noqa: E402
+from voldetail.noise.stones import STONE_RADIUS, highest_stone  # noqa: E402
 
 SALT = 1993
 SHAPES = [(0.0, 1.0, 0.0), (1.0, 1.0, 0.0), (0.6, 2.1, 0.5), (1.0, 4.0, 0.8)]
@@ -24,8 +24,8 @@ SHAPES = [(0.0, 1.0, 0.0), (1.0, 1.0, 0.0), (0.6, 2.1, 0.5), (1.0, 4.0, 0.8)]
 
 def grains_of(x: np.ndarray, shape: tuple[float, float, float], rounded: bool = False) -> tuple[np.ndarray, np.ndarray]:
     points = tuple(Float64(np.ascontiguousarray(x[:, axis])) for axis in range(x.shape[1]))
-    numbers = GrainShape(*(dr.opaque(Float64, value) for value in shape))
-    height, owner = highest_grain(points, dr.opaque(mi.UInt32, SALT), numbers, rounded)
+    numbers = StoneShape(*(dr.opaque(Float64, value) for value in shape))
+    height, owner = highest_stone(points, dr.opaque(mi.UInt32, SALT), numbers, rounded)
     return height.numpy(), owner.numpy()
 
 
@@ -46,7 +46,7 @@ def test_against_a_second_implementation(dims: int, shape: tuple[float, float, f
 def test_round_stones_of_one_size_are_cones_about_the_closest_point(dims: int) -> None:
     x = np.random.default_rng(3).uniform(-20, 20, (2000, dims))
     closest = nearest_points(tuple(Float64(np.ascontiguousarray(c)) for c in x.T), mi.UInt32(SALT), 1)[0][0].numpy()
-    expected = np.maximum(0.0, 1.0 - closest / GRAIN_RADIUS[dims])
+    expected = np.maximum(0.0, 1.0 - closest / STONE_RADIUS[dims])
     assert grains_of(x, (0.0, 1.0, 0.0))[0] == pytest.approx(expected, abs=1e-6)  # the square root has a floor of 1e-6
     assert grains_of(x, (0.0, 1.0, 0.0), True)[0] == pytest.approx(1.0 - (1.0 - expected) ** 2, abs=1e-6)
 
@@ -66,7 +66,7 @@ def test_no_stone_reaches_beyond_its_support(dims: int) -> None:
 @pytest.mark.parametrize("dims", [2, 3])
 def test_stones_join_without_a_jump(dims: int) -> None:
     facets, elongation, spread = shape = (1.0, 2.0, 0.5)
-    step, radius = 1e-4, GRAIN_RADIUS[dims]
+    step, radius = 1e-4, STONE_RADIUS[dims]
     direction = np.array([0.6, 0.8, 0.0][:dims] if dims == 2 else [0.6, 0.48, 0.64])
     line = np.array([0.3, -7.0, 2.0])[:dims] + np.arange(100_000)[:, None] * step * direction
     height, owner = grains_of(line, shape)
@@ -107,7 +107,7 @@ def relief_of(x: np.ndarray, float_type: Any, octaves: int = 1) -> np.ndarray:
     numbers = {"scale": 3.1, "anisotropy": 1.4, "angle": 0.6, "lacunarity": 2.5, "stripe_frequency": 0.0, "stripe_spread": 0.0}
     values = {name: dr.opaque(float_type, value) for name, value in numbers.items()}
     settings = NoiseSettings.from_ranks(3, 1, 50, octaves, highest=True)
-    shape = GrainShape(*(dr.opaque(float_type, value) for value in (0.8, 1.8, 0.4)))
+    shape = StoneShape(*(dr.opaque(float_type, value) for value in (0.8, 1.8, 0.4)))
     curve = float_type(np.linspace(0, 1, 11))
     gain = dr.opaque(float_type, 0.3)
     return relief_function(points, settings, dr.opaque(mi.UInt32, 5), curve=curve, shape=shape, gain=gain, **values)[0].numpy()

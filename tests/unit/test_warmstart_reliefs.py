@@ -1,4 +1,4 @@
-"""The looks of the relief library, and how one becomes a start of another fit."""
+"""The reliefs of the relief library, and how one becomes a start of another fit."""
 
 import math
 from dataclasses import replace
@@ -8,36 +8,36 @@ import pytest
 
 from voldetail.fit.space import Space
 from voldetail.fit.warmstart.exposure import SHARES, TONES, exposed
-from voldetail.fit.warmstart.reliefs import SPACE, WINDOW, look, seen_through
+from voldetail.fit.warmstart.reliefs import SPACE, WINDOW, library_relief, seen_through
 from voldetail.image import to_linear, to_srgb
 
 
-def test_look_k_is_the_same_in_whatever_order_it_is_asked_for() -> None:
-    late, early = look(900), look(3)
-    again_early, again_late = look(3), look(900)
+def test_relief_k_is_the_same_in_whatever_order_it_is_asked_for() -> None:
+    late, early = library_relief(900), library_relief(3)
+    again_early, again_late = library_relief(3), library_relief(900)
     for a, b in ((late, again_late), (early, again_early)):
         assert (a.kind, a.seed) == (b.kind, b.seed)
         np.testing.assert_array_equal(a.vector, b.vector)
-    assert look(3, seed=1).seed != early.seed
+    assert library_relief(3, seed=1).seed != early.seed
 
 
-def test_looks_cover_all_families_and_a_quarter_turn_of_angles() -> None:
-    looks = [look(k) for k in range(400)]
-    families = {replace(s.kind, octaves=1, envelope="", pigment=False) for s in looks}
+def test_reliefs_cover_all_families_and_a_quarter_turn_of_angles() -> None:
+    reliefs = [library_relief(k) for k in range(400)]
+    families = {replace(s.kind, octaves=1, envelope="", pigment=False) for s in reliefs}
     assert len(families) >= 20
-    angles = [SPACE.at("noise.angle", s.vector[SPACE.names(s.kind).index("noise.angle")]) for s in looks]
+    angles = [SPACE.at("noise.angle", s.vector[SPACE.names(s.kind).index("noise.angle")]) for s in reliefs]
     assert 0.0 <= min(angles) < 0.1
     assert math.pi / 2 - 0.1 < max(angles) <= math.pi / 2
     assert np.mean(angles) == pytest.approx(math.pi / 4, abs=4 * (math.pi / 2) / math.sqrt(12 * 400))
-    assert len({s.seed for s in looks}) == len(looks)
-    for s in looks:
+    assert len({s.seed for s in reliefs}) == len(reliefs)
+    for s in reliefs:
         assert (np.clip(s.vector, 0.0, 1.0) == s.vector).all()
         s.detail()  # within a detail's bounds, or it would be refused
 
 
-def test_a_start_is_the_look_itself_through_the_librarys_window() -> None:
+def test_a_start_is_the_relief_itself_through_the_librarys_window() -> None:
     for k in range(40):
-        found = look(k)
+        found = library_relief(k)
         start = seen_through(found, WINDOW, 0.0, mirrored=False)
         candidate = start.candidate(SPACE)
         assert candidate.kind == found.kind
@@ -45,7 +45,7 @@ def test_a_start_is_the_look_itself_through_the_librarys_window() -> None:
 
 
 def test_a_smaller_window_has_finer_cells_and_the_light_turns_the_angle() -> None:
-    found = look(6)
+    found = library_relief(6)
     wide, narrow = (seen_through(found, window, 0.0, mirrored=False).values for window in (WINDOW, WINDOW / 4))
     assert narrow["noise.scale"] == pytest.approx(4 * wide["noise.scale"])
     turned = seen_through(found, WINDOW, 1.0, mirrored=False).values["noise.angle"]

@@ -16,4 +16,4 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
 
 def compare(a: Array, b: Array, basis: Array | None, /) -> float:
     """1-Wasserstein distance in the reference's standard deviations."""
-    return wasserstein(a, b, basis)
+    return float(wasserstein(a, b, basis))

@@ -52,9 +52,9 @@ def test_half_a_turn_changes_the_sign_and_brightness_changes_little(level: str) 
     assert np.abs(darker - one).mean() < 0.3 * np.abs(one).mean()
 
 
-def test_noise_leans_nowhere() -> None:
-    leans = [np.abs(measure(layers(noise(seed)), {})["level 0"]).mean() for seed in range(8)]
-    assert max(leans) < 0.03
+def test_noise_has_no_skew() -> None:
+    skews = [np.abs(measure(layers(noise(seed)), {})["level 0"]).mean() for seed in range(8)]
+    assert max(skews) < 0.03
     assert np.abs(measure(layers(saw()), {})["level 0"][ACROSS]).mean() > 0.3
 
 
@@ -67,15 +67,15 @@ def lit(seed: int, slope: float = 0.6) -> Image:
 
 def test_it_knows_a_relief_lit_from_the_other_side_and_the_others_hardly_do() -> None:
     ratios = {}
-    for metric in ("lean", "combined", "published"):
+    for metric in ("gradient-skew", "combined", "published"):
         asking = describe(lit(1), metric=metric)
         same, other = (
             np.mean([distance(asking, describe(lit(seed, slope), like=asking)) for seed in (2, 3, 4)])
             for slope in (0.6, -0.6)
         )
         ratios[metric] = other / same
-    assert "lean" in METRICS
-    assert ratios["lean"] > 4
+    assert "gradient-skew" in METRICS
+    assert ratios["gradient-skew"] > 4
     assert max(ratios["combined"], ratios["published"]) < 2
 
 

@@ -52,4 +52,4 @@ def measure(layers: Layers, basis: Parts, /) -> Parts:
 
 def compare(a: Array, b: Array, basis: Array | None, /) -> float:
     """Mean over directions, in standard deviations of the reference."""
-    return wasserstein(a, b, basis)
+    return float(wasserstein(a, b, basis))

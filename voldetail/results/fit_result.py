@@ -8,23 +8,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.detail import Detail
-from voldetail.fit.colour import ColourChoice
-from voldetail.fit.identifiability import Told
-from voldetail.fit.interval import AmplitudeInterval
-from voldetail.fit.lightguess import LightGuess
-from voldetail.fit.target import Target
 from voldetail.image import luminance
+from voldetail.results.colour import ColourChoice
+from voldetail.results.identifiability import Identifiability
+from voldetail.results.interval import AmplitudeInterval
+from voldetail.results.light_guess import LightGuess
+from voldetail.results.target import Target
 from voldetail.setup.setup import Setup
 
 
 @dataclass(frozen=True)
 class FitResult:
-    """What a fit found. status says in a sentence why it ended; trace is (evaluations, best distance) as it fell.
+    """What a fit ended with. status says in a sentence why it ended; trace is (evaluations, best distance) as it fell.
 
     setup: the one that was fitted, with the direction found where its light was "auto", and then light_guess.
     heights: the amplitudes that fit about as well; None where the user gave the amplitude or stopped the fit.
     colour: what was chosen for the colour, and how far each try was from the photo.
-    told: for a medium, what the photo tells of each of its numbers; empty for other details, and where the fit was stopped.
+    identifiability: for a medium, how well the photo tells each of its numbers; empty for other details, and where
+    the fit was stopped.
     picture (H, W): its luminance. covered (H, W): the share of each pixel that is filled; background: what shows through.
     """
 
@@ -42,7 +43,7 @@ class FitResult:
     interrupted: bool
     light_guess: LightGuess | None = None
     heights: AmplitudeInterval | None = None
-    told: tuple[Told, ...] = ()
+    identifiability: tuple[Identifiability, ...] = ()
     colour: ColourChoice | None = None
 
     @property
