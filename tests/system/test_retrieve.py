@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from voldetail.cli import main, retrieve_command
+from voldetail.cli import main
+from voldetail.cli.commands import retrieve as retrieve_command
 from voldetail.detail import StructureTexture
 from voldetail.detail.texture_file import load_texture
 from voldetail.image import save_png
@@ -40,7 +41,7 @@ def photo(tmp_path: Path, groups: Groups, monkeypatch: pytest.MonkeyPatch) -> Pa
 
 def test_a_known_wall_is_found(photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     sheet, answers = tmp_path / "sheet.png", tmp_path / "answers.json"
-    assert main(["retrieve", str(photo), "--top", "3", "-o", str(sheet), "--json", str(answers)]) == 0
+    assert main(["retrieve", str(photo), "--top", "3", "-o", str(sheet), "--answers", str(answers)]) == 0
     said = capsys.readouterr().out
     lines = [line.split() for line in said.splitlines()]
     assert lines[1][:2] == ["1", "brick"]
@@ -55,7 +56,7 @@ def test_a_known_wall_is_found(photo: Path, tmp_path: Path, capsys: pytest.Captu
     np.testing.assert_allclose([first["zero"], first["one"]], [BRIGHT, DARK], atol=0.06)
     with Image.open(sheet) as picture:
         assert picture.width >= 480
-    assert main(["retrieve", str(photo), "--model", "perlin", "--no-rotation", "--no-swap", "--json", str(answers)]) == 0
+    assert main(["retrieve", str(photo), "--model", "perlin", "--no-rotation", "--no-swap", "--answers", str(answers)]) == 0
     found = json.loads(answers.read_text())
     assert {(a["model"], a["rotation"], a["swapped"]) for a in found["answers"]} == {("perlin", 0.0, False)}
 
@@ -89,7 +90,7 @@ def test_a_zone_a_mask_and_a_scale(photo: Path, tmp_path: Path, capsys: pytest.C
     mask = tmp_path / "mask.png"
     Image.fromarray(np.where(np.arange(128) < 120, 255, 0).astype(np.uint8)[None].repeat(128, 0)).save(mask)
     answers = tmp_path / "answers.json"
-    words = ["--zone", "0,0,96,80", "--mask", str(mask), "--scale", "0.5", "--json", str(answers), "--top", "1"]
+    words = ["--zone", "0,0,96,80", "--mask", str(mask), "--scale", "0.5", "--answers", str(answers), "--top", "1"]
     assert main(["retrieve", str(photo), *words]) == 0
     assert "too small for the coarsest" in " ".join(capsys.readouterr().err.split())
     found = json.loads(answers.read_text())
@@ -106,17 +107,17 @@ def test_a_library_s_file_and_the_default_library_are_searched(
     save_png(tmp_path / "photo.png", recolour(structure(MODELS["star"], {"tips": 5}, 128), DARK, BRIGHT))
     library, answers = tmp_path / "stars.vlib", tmp_path / "answers.json"
     assert main(["library", "build", "star", "--entries", "3", "--workers", "1", "-o", str(library)]) == 0
-    assert main(["retrieve", str(tmp_path / "photo.png"), "--library", str(library), "--json", str(answers)]) == 0
+    assert main(["retrieve", str(tmp_path / "photo.png"), "--library", str(library), "--answers", str(answers)]) == 0
     exact = json.loads(answers.read_text())
     assert list(exact["best_of_each"]) == ["star"]
-    words = ["retrieve", str(tmp_path / "photo.png"), "--library", str(library), "--index", "--json", str(answers)]
+    words = ["retrieve", str(tmp_path / "photo.png"), "--library", str(library), "--index", "--answers", str(answers)]
     assert main(words) == 2
     assert "has no index" in capsys.readouterr().err
     assert main(["library", "index", str(library)]) == 0
     assert main(words) == 0
     assert json.loads(answers.read_text()) == exact
     for _ in range(2):
-        assert main(["retrieve", str(tmp_path / "photo.png"), "--json", str(answers)]) == 0
+        assert main(["retrieve", str(tmp_path / "photo.png"), "--answers", str(answers)]) == 0
         assert list(json.loads(answers.read_text())["best_of_each"]) == list(MODELS)
     assert len(list((tmp_path / "cache").iterdir())) == 1
     capsys.readouterr()
@@ -133,7 +134,7 @@ def test_a_library_s_file_and_the_default_library_are_searched(
         (["--model", "brik"], "the nearest one is brick"),
         (["--mask", "photo.png"], "mask"),
         (["-o", "sheet.jpg"], "ends in .png"),
-        (["--json", "missing/answers.json"], "no folder"),
+        (["--answers", "missing/answers.json"], "no folder"),
         (["--top", "0"], "--top"),
         (["--index"], "without a library"),
     ],

@@ -118,7 +118,7 @@ def test_what_goes_wrong_inside(
     error: BaseException, code: int, says: str, detail: Path, capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
-    monkeypatch.setattr("voldetail.cli.show_command.load_detail", _raising(error))
+    monkeypatch.setattr("voldetail.cli.commands.show.load_detail", _raising(error))
     assert main(["show", str(detail)]) == code
     shown = capsys.readouterr()
     assert says in shown.err

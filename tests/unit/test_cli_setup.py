@@ -1,11 +1,14 @@
 """The options of fit as a Setup."""
 
+import inspect
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from voldetail.cli.fit_setup import KEYS, output_folder, read_setup
+from voldetail.cli.commands.fit import fit
+from voldetail.cli.fit_setup import implied, output_folder, read_setup
+from voldetail.cli.settings import field_of, given, setting
 from voldetail.errors import InputError
 from voldetail.setup.setup import Setup
 
@@ -13,8 +16,7 @@ SCENES = Path(__file__).resolve().parents[2] / "scenes"
 
 
 def read(*overrides: str, photo: str = "skimage:gravel", **options: Any) -> Setup:
-    named = {f"--{name.replace('_', '-')}": value for name, value in options.items()}
-    return read_setup(photo, named, overrides)
+    return read_setup(photo, implied(list(given(fit, options))), overrides)
 
 
 def test_every_option_reaches_the_setup() -> None:
@@ -36,7 +38,7 @@ def test_every_option_reaches_the_setup() -> None:
 def test_options_not_given_leave_the_defaults() -> None:
     plain = read(
         light="70,50",
-        **{name.removeprefix("--").replace("-", "_"): None for name in KEYS if name != "--light"},
+        **dict.fromkeys(name for name in inspect.signature(fit).parameters if name not in ("photo", "light")),
     )
     assert plain == read(light="70,50")
     assert plain.photo.resolution == 192
@@ -92,3 +94,12 @@ def test_where_results_go_by_default() -> None:
     assert output_folder(read(light="1,2")) == Path("voldetail-out/gravel")
     assert output_folder(read(photo="a/wall.old.jpg", light="1,2")) == Path("voldetail-out/wall.old")
     assert output_folder(read(light="1,2", output="x")) == Path.cwd() / "x"
+
+
+def test_an_option_says_what_its_field_says() -> None:
+    option = setting("photo.resolution", panel="Where")
+    assert option.help == "The longest side of the zone after resampling, in pixels."
+    assert field_of("fit.evaluations").description in (setting("fit.evaluations", panel="x").help or "")
+    for wrong in ("photo.size", "seed.root", "nothing"):
+        with pytest.raises(KeyError):
+            field_of(wrong)

@@ -5,13 +5,18 @@ from __future__ import annotations
 import errno
 import os
 import sys
+import time
 import traceback
 from collections.abc import Sequence
 
 from typer.main import get_command
 
 from voldetail.cli.app import app
+from voldetail.cli.console import MANNER, explain
 from voldetail.errors import VoldetailError
+
+MANNERS = ("--json", "--quiet", "--verbose", "--debug")
+"""Words that any command takes, at any place."""
 
 DONE, FAILED, BAD_INPUT, STOPPED = 0, 1, 2, 130  # 130 = 128 + SIGINT, as shells report it
 
@@ -20,13 +25,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line (default: the process's own) and return the exit code.
 
     0 done; 2 bad input or output, told in one sentence on the error stream; 130 stopped with Ctrl-C; 1 a
-    defect of voldetail itself. `--debug` shows the traceback as well.
+    defect of voldetail itself. `--debug` shows the traceback as well. Words that say how a command speaks stand before or
+    after it.
     """
     asked = list(sys.argv[1:] if arguments is None else arguments)
-    given = [word for word in asked if word != "--debug"]  # before or after the command
-    debug = len(given) < len(asked)
+    given = [word for word in asked if word not in MANNERS]
+    debug = "--debug" in asked
+    MANNER.quiet, MANNER.verbose, MANNER.as_json = (word in asked for word in ("--quiet", "--verbose", "--json"))
+    MANNER.threads, MANNER.begun = 0, time.monotonic()
     try:
         code = get_command(app).main(given, prog_name="voldetail", standalone_mode=False)
+        explain(f"Done in {time.monotonic() - MANNER.begun:.1f} s.")
         sys.stdout.flush()
         return code if isinstance(code, int) else DONE
     except SystemExit as leaving:  # how the parser ends after a reader went away

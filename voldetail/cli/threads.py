@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from voldetail.cli.console import MANNER
 
-def use_threads(count: int | None) -> None:
-    """Limit the renderer to ``count`` threads; 0 or None leaves it all of them."""
-    if count:
+
+def use_threads() -> None:
+    """Limit the renderer to the threads that the user gave; 0 leaves it all of them."""
+    if MANNER.threads:
         from voldetail.backend import set_threads
 
-        set_threads(count)
+        set_threads(MANNER.threads)

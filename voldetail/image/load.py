@@ -15,9 +15,9 @@ from voldetail.image.decode_exr import decode_exr
 from voldetail.image.decode_pillow import decode_pillow
 from voldetail.image.decode_tiff import MAGICS as TIFF_MAGICS
 from voldetail.image.decode_tiff import decode_float_tiff
-from voldetail.image.examples import picture_path
 from voldetail.image.samples import Samples, upright
 from voldetail.image.srgb import to_linear
+from voldetail.records.examples import picture_path
 
 Encoding = Literal["auto", "srgb", "linear"]
 

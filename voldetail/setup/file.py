@@ -7,13 +7,13 @@ import os
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
 from voldetail.detail.record import Record
 from voldetail.errors import InputError
-from voldetail.image.examples import PREFIX
+from voldetail.records.examples import PREFIX
 from voldetail.records.reading import read_small_text
 from voldetail.records.refusal import dotted, printable, refusal, shown, worst
 from voldetail.setup.light import parse_light
@@ -22,8 +22,16 @@ from voldetail.setup.setup import Setup
 _PATHS = (("photo", "path"), ("mask",), ("proxy", "mesh"), ("output",))
 
 
-def load_setup(path: Path | str, overrides: Sequence[str] = ()) -> Setup:
-    """The Setup in the TOML file at `path`, changed by `overrides` of the form "key.sub=value".
+class Given(NamedTuple):
+    """A setting that was given on its own: its key, its value (None: the default), and how a refusal names it."""
+
+    key: tuple[str, ...]
+    value: object
+    source: str
+
+
+def load_setup(path: Path | str, overrides: Sequence[str] = (), given: Sequence[Given] = ()) -> Setup:
+    """The Setup in the TOML file at `path`, changed by what is `given`, then by `overrides` of the form "key.sub=value".
 
     Relative paths in the file start at the file's folder, those in overrides at the current one. A value is
     read as TOML or else as text; "key.sub=" with nothing after it brings back the default.
@@ -31,11 +39,12 @@ def load_setup(path: Path | str, overrides: Sequence[str] = ()) -> Setup:
     """
     path = Path(path)
     text = read_small_text(path, "setup file")
-    return setup_from_text(text, overrides, where=printable(str(path)), folder=path.parent)
+    return setup_from_text(text, overrides, where=printable(str(path)), folder=path.parent, given=given)
 
 
 def setup_from_text(
-    text: str, overrides: Sequence[str] = (), *, where: str = "The setup", folder: Path | None = None
+    text: str, overrides: Sequence[str] = (), *, where: str = "The setup", folder: Path | None = None,
+    given: Sequence[Given] = (),
 ) -> Setup:
     """The Setup in the TOML `text`, as `load_setup`; relative paths start at `folder` (default: current)."""
     try:
@@ -48,12 +57,13 @@ def setup_from_text(
         )
         raise InputError(f"{where} is not valid TOML: {reason}.") from None
     data = _with_paths(data, folder or Path())
-    changed = []
+    changed = list(given)
     for override in overrides:
         key, value = _override(override)
-        _put(data, key, value, override)
-        changed.append((key, f"{where} with -D {shown(override)}"))
-    return setup_from(data, where=where, sources=dict(changed))
+        changed.append(Given(key, value, f"{where} with -D {shown(override)}"))
+    for one in changed:
+        _put(data, one)
+    return setup_from(data, where=where, sources={one.key: one.source for one in changed})
 
 
 def setup_from(
@@ -138,21 +148,19 @@ def _override(text: str) -> tuple[tuple[str, ...], Any]:
     return key, made if plain else value
 
 
-def _put(data: dict[str, Any], key: tuple[str, ...], value: Any, override: str) -> None:
-    table = data
+def _put(data: dict[str, Any], given: Given) -> None:
+    table, key = data, given.key
     if key[0] == "light" and len(key) > 1:
         _read_light(data)
     for depth, part in enumerate(key[:-1], start=1):
         below = table.setdefault(part, {})
         if not isinstance(below, dict):
-            raise InputError(
-                f"The override {shown(override)} cannot be used: {dotted(key[:depth])} is a single value."
-            )
+            raise InputError(f"{given.source} cannot be used: {dotted(key[:depth])} is a single value.")
         table = below
-    if value is None:
+    if given.value is None:
         table.pop(key[-1], None)
     else:
-        table[key[-1]] = value
+        table[key[-1]] = given.value
 
 
 def _read_light(data: dict[str, Any]) -> None:

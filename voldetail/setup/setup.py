@@ -14,7 +14,7 @@ from pydantic import Field, model_validator
 
 from voldetail.detail.parameters import declared, parameter
 from voldetail.detail.record import LARGEST_SEED, Record
-from voldetail.image.examples import NAMES, PREFIX
+from voldetail.records.examples import NAMES, PREFIX
 from voldetail.records.nearest import nearest
 from voldetail.setup.light import FURTHEST, Length, Light, Vector
 from voldetail.setup.shapes import SHAPES, ShapeKind, ShapeRow

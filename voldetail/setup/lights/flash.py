@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter
 
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.lights.kind import Fields, LightKind, LightNumbers, Numbers, listed
@@ -54,6 +53,8 @@ class Flash(LightKind):
 
 def flash_foot(luminance: NDArray[np.float32]) -> tuple[float, float]:
     """Return where a flash photo is brightest, as fractions (u, v) from the left and the top."""
+    from scipy.ndimage import gaussian_filter  # loaded when a photo is there: the command line starts without it
+
     rows, columns = luminance.shape
     # Full resolution is not needed for a wide blur.
     step = max(1, max(rows, columns) // 256)

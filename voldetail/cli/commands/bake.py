@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from voldetail.cli.console import output, remarks
+from voldetail.cli.console import remarks, result
 from voldetail.cli.outputs import check_file
 from voldetail.cli.shape_options import MESH_HELP, DetailFile, Rotation, Scale, rotation_of, shape_of, tell
 from voldetail.cli.threads import use_threads
@@ -15,7 +15,6 @@ from voldetail.detail import load_detail
 
 
 def bake(
-    context: typer.Context,
     detail: DetailFile,
     shape: Annotated[str, typer.Argument(metavar="MESH", help=MESH_HELP)],
     out: Annotated[
@@ -34,7 +33,7 @@ def bake(
     check_file(out)
     record, shape = load_detail(detail), shape_of(shape)
     options = ExportOptions(cells=cells, scale=scale, rotation=rotation_of(rotation), tell=tell)
-    use_threads(context.obj)
+    use_threads()
     with remarks().status(f"baking {shape}"):
         words = export(record, shape, out, options)
-    output().print(f"{out}  {words}", markup=False, soft_wrap=True)
+    result({"file": str(out), "what": words}, f"{out}  {words}")

@@ -11,7 +11,7 @@ import typer
 from rich.table import Table
 
 from voldetail.cli.arguments import whole_numbers
-from voldetail.cli.console import output, remarks
+from voldetail.cli.console import output, remarks, result
 from voldetail.cli.outputs import check_file
 from voldetail.errors import InputError
 
@@ -50,7 +50,7 @@ def retrieve(
     ] = False,
     swap: Annotated[bool, typer.Option("--swap/--no-swap", help="Whether the two tones may change places.")] = True,
     sheet: Annotated[Path | None, typer.Option("--output", "-o", help="A sheet of the photo and the answers, .png.")] = None,
-    as_json: Annotated[Path | None, typer.Option("--json", help="The answers as JSON.")] = None,
+    answers: Annotated[Path | None, typer.Option(help="A file for the answers, .json, as --json prints them.")] = None,
     texture: Annotated[
         Path | None, typer.Option(help="The first answer as a texture file, .json, for texture render.")
     ] = None,
@@ -62,7 +62,7 @@ def retrieve(
     """
     from voldetail.library import novelty_of, rank
 
-    for path, suffix in ((sheet, ".png"), (as_json, ".json"), (texture, ".json")):
+    for path, suffix in ((sheet, ".png"), (answers, ".json"), (texture, ".json")):
         if path is not None:
             if path.suffix.lower() != suffix:
                 raise InputError(f"Cannot write {path}: give a name that ends in {suffix}.")
@@ -78,14 +78,16 @@ def retrieve(
         novelty = novelty_of(groups[first.model], first, rotations=rotation, swap=swap)
     said = _remarks(asked, novelty)
     _print(found, asked, said)
-    if as_json is not None:
+    record = _record(photo, asked, found, novelty, said)
+    result(record)
+    if answers is not None:
         from voldetail.files import write_text
 
-        write_text(as_json, json.dumps(_record(photo, asked, found, novelty, said), indent=2) + "\n")
+        write_text(answers, json.dumps(record, indent=2) + "\n")
     if texture is not None:
         from voldetail.detail.texture_file import save_texture
-        from voldetail.image.examples import picture_path
         from voldetail.library import texture_of
+        from voldetail.records.examples import picture_path
 
         name = picture_path(photo)
         save_texture(texture, texture_of(found.answers[0], (asked.photo.shape[0], asked.photo.shape[1]), name.name))

@@ -9,7 +9,8 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from voldetail.cli.console import output, remarks
+from voldetail.cli.console import output, remarks, result
+from voldetail.cli.library_words import size_on_disk
 from voldetail.records.refusal import printable, shown
 
 if TYPE_CHECKING:
@@ -48,16 +49,14 @@ def info(
         output().print(f"{label + ':':12}{text}", markup=False, soft_wrap=True)
     if check:
         _check(header)
+    result({
+        "sources": {name: {"entries": record.entries, "seed": record.seed, "current": _current(name, record)}
+                    for name, record in header.sources.items()},
+        "entries": header.entries, "bytes": header.bytes, "sha256": header.sha256, "stale": header.stale,
+        "index": (library / "index").is_file(), "checked": check,
+    })  # fmt: skip
+    if check:
         output().print("checked:    every number is the one that was written.", markup=False)
-
-
-def size_on_disk(count: float) -> str:
-    """Return bytes in words, to three digits."""
-    for unit in ("bytes", "kB", "MB"):
-        if count < 1000:
-            return f"{count:.3g} {unit}"
-        count /= 1000
-    return f"{count:.3g} GB"
 
 
 def _current(name: str, record: SourceRecord) -> str:

@@ -1,8 +1,7 @@
-"""`voldetail show` and `voldetail schema`: a detail file in words, and the form of all of them."""
+"""`voldetail show`: a detail file in words and units."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -10,18 +9,16 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from voldetail.cli.console import output
+from voldetail.cli.console import MANNER, output
 from voldetail.detail import Detail, describe_in_words, detail_to_text, load_detail, summary
-from voldetail.detail import schema as detail_schema
 
 
 def show(
     detail: Annotated[Path, typer.Argument(help="A detail file, as fit makes it.")],
-    as_json: Annotated[bool, typer.Option("--json", help="Print it as JSON, in the newest form.")] = False,
 ) -> None:
     """Show the parameters of a detail in words and units."""
     record = load_detail(detail)
-    if as_json:
+    if MANNER.as_json:
         print(detail_to_text(record), end="")
         return
     console = output()
@@ -37,11 +34,6 @@ def show(
     console.print(table)
     for line in _origin(record):
         console.print(Text(line), soft_wrap=not console.is_terminal)
-
-
-def schema() -> None:
-    """Print the JSON schema of detail files."""
-    print(json.dumps(detail_schema(), indent=2, ensure_ascii=False))
 
 
 def _origin(record: Detail) -> list[str]:

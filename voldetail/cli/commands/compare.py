@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,7 +11,7 @@ import typer
 from numpy.typing import NDArray
 from rich.table import Table
 
-from voldetail.cli.console import output
+from voldetail.cli.console import output, result
 from voldetail.errors import InputError
 
 if TYPE_CHECKING:
@@ -44,7 +43,6 @@ def compare(
         int | None,
         typer.Option(min=32, max=2000, help="Shrink both so that the longest side has this many pixels."),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
 ) -> None:
     """Compare the textures of two pictures: the distance M, and what it is made of.
 
@@ -60,14 +58,12 @@ def compare(
     reference = describe(a.light, a.mask, metric=metric)
     parts = distance_by_level(reference, describe(b.light, b.mask, like=reference))
     halves = _halves(a, metric)
-    result = {
+    record = {
         "a": first, "b": second, "metric": metric, "distance": _total(parts), "parts": parts,
         "halves_of_a": None if halves is None else {"distance": _total(halves), "parts": halves},
     }  # fmt: skip
-    if as_json:
-        print(json.dumps(result, indent=2))
-    else:
-        _print(result)
+    result(record)
+    _print(record)
 
 
 def _read(name: str, mask: Path | None, resolution: int | None) -> _Picture:
@@ -111,18 +107,18 @@ def _total(parts: dict[str, float]) -> float:
     return float(sum(parts.values()))
 
 
-def _print(result: dict[str, Any]) -> None:
-    halves = result["halves_of_a"]
+def _print(record: dict[str, Any]) -> None:
+    halves = record["halves_of_a"]
     table = Table(
-        title=f"{result['a']} against {result['b']}, metric {result['metric']}", title_justify="left"
+        title=f"{record['a']} against {record['b']}, metric {record['metric']}", title_justify="left"
     )
     table.add_column("part")
     table.add_column("A against B", justify="right")
     table.add_column("A's halves", justify="right")
-    for part, value in result["parts"].items():
+    for part, value in record["parts"].items():
         table.add_row(part, f"{value:.4g}", "" if halves is None else f"{halves['parts'].get(part, 0.0):.4g}")
     table.add_section()
     table.add_row(
-        "M, all together", f"{result['distance']:.4g}", "" if halves is None else f"{halves['distance']:.4g}"
+        "M, all together", f"{record['distance']:.4g}", "" if halves is None else f"{halves['distance']:.4g}"
     )
     output().print(table)

@@ -1,4 +1,4 @@
-"""`voldetail stationarize` and `voldetail stationarity`: tiles that repeat unseen, and how even a texture is."""
+"""`voldetail stationarize`: tiles that repeat unseen."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.table import Table
 
-from voldetail.cli.console import output, remarks
+from voldetail.cli.console import Json, output, remarks, result
+from voldetail.cli.even_photo import MaskFile, PhotoName, read_even
 from voldetail.cli.outputs import check_file
 from voldetail.cli.threads import use_threads
 from voldetail.errors import InputError
@@ -24,17 +24,12 @@ if TYPE_CHECKING:
 MEASURE_HELP = (
     "What has to be alike everywhere: histogram, moments2, moments3, moments4, mean, steerable; or none, for plain PatchMatch."
 )
-MEASURED_SIDE = 1024  # pixels: a larger photo is measured smaller, in seconds instead of minutes
-UNITS = {"histogram": "L*a*b*", "steerable": "L*a*b*"}
 
-_Photo = Annotated[str, typer.Argument(help="A photo of a texture, or skimage:gravel, :grass, :brick.")]
-_Mask = Annotated[Path | None, typer.Option(help="A picture of the photo's size: white is used.")]
 _Pairs = list[str] | None
 
 
 def stationarize(
-    context: typer.Context,
-    photo: _Photo,
+    photo: PhotoName,
     out: Annotated[Path, typer.Option("--output", "-o", help="The tile: .png, .jpg or .exr (linear).")],
     measure: Annotated[str, typer.Option(help=MEASURE_HELP)] = "histogram",
     sigma: Annotated[
@@ -45,7 +40,7 @@ def stationarize(
         int | None, typer.Option(help="Make so many tiles instead, from the evenest to the least even: TILE-1.png and so on.")
     ] = None,
     pixels: Annotated[int, typer.Option("--size", help="The tile's side in pixels.")] = 256,
-    mask: _Mask = None,
+    mask: MaskFile = None,
     carry: Annotated[
         _Pairs, typer.Option(metavar="MAP=OUT", help="Tile a map of the photo's size (height, albedo) along with it.")
     ] = None,
@@ -72,11 +67,11 @@ def stationarize(
     for target in [*targets, *(to for _, to, _ in maps)]:
         check_suffix(target)
         check_file(target)
-    picture, use = _read(photo, mask)
+    picture, use = read_even(photo, mask)
     checked_size(pixels, use.shape)
     carried = [(_read_map(path, use.shape, normals), target, normals) for path, target, normals in maps]
     options: dict[str, Any] = {"measure": None if measure == "none" else measure, "mask": use, "seed": seed}
-    use_threads(context.obj)
+    use_threads()
     with ProgressView(remarks()) as view:
         tell = _teller(view)
         if levels is None:
@@ -85,54 +80,12 @@ def stationarize(
         else:
             found = palette(picture, pixels, levels=levels, on_progress=tell, **options)
             tiles, stopped = list(found.tiles), found.interrupted
-    for tile, target in zip(tiles, targets, strict=False):
-        _write(tile, target)
+    written = [_write(tile, target) for tile, target in zip(tiles, targets, strict=False)]
     for values, target, normals in carried:
         _write_map(tiles[0], values, target, normals)
+    result({"tiles": written, "maps": [str(target) for _, target, _ in carried], "stopped": stopped})
     if stopped:
         output().print("Stopped by you: this is the best so far.")
-
-
-def stationarity(
-    photo: _Photo,
-    heat: Annotated[Path | None, typer.Option(help="A picture of where the photo differs from the rest: .png or .jpg.")] = None,
-    measure: Annotated[str, typer.Option(help="The measure of --heat.")] = "histogram",
-    sigma: Annotated[
-        float | None, typer.Option(help="Size of the neighbourhoods in pixels; default a twelfth of the shorter side.")
-    ] = None,
-    mask: _Mask = None,
-    tile: Annotated[bool, typer.Option("--tile", help="The photo is a tile: its opposite edges meet.")] = False,
-) -> None:
-    """Measure how far a texture is from being the same everywhere; 0 is perfectly even."""
-    from voldetail.image import check_suffix, resize, resize_mask, save_image
-    from voldetail.report.heat import heat as coloured
-    from voldetail.stationary.measure import MEASURES, check_measure, checked_sigma
-    from voldetail.stationary.measure import stationarity as measured
-
-    check_measure(measure)
-    if heat is not None:
-        check_suffix(heat)
-        check_file(heat)
-    picture, use = _read(photo, mask)
-    width = checked_sigma(sigma, use.shape)
-    shrink = min(1.0, MEASURED_SIDE / max(use.shape))
-    if shrink < 1:
-        shape = (round(use.shape[0] * shrink), round(use.shape[1] * shrink))
-        picture, use = resize(picture, shape), resize_mask(use, shape)
-        remarks().print(f"The photo was measured at {shape[1]} x {shape[0]} pixels.", markup=False, soft_wrap=True)
-    table = Table(box=None, padding=(0, 2, 0, 0))
-    for heading in ("measure", "value", "unit"):
-        table.add_column(heading, no_wrap=True)
-    with remarks().status("measuring") as status:
-        for name in MEASURES:
-            status.update(f"measuring: {name}")
-            found = measured(picture, use, measure=name, sigma=max(width * shrink, 1.0), toroidal=tile)
-            table.add_row(name, f"{found.value:.4g}", UNITS.get(name, "L*a*b* squared"))
-            if heat is not None and name == measure:
-                save_image(heat, coloured(found.map, picture))
-    output().print(table)
-    where = f"  {heat}" if heat else ""
-    output().print(f"sigma {width:.3g} pixels{where}", markup=False, soft_wrap=True)
 
 
 def _pair(text: str, option: str) -> tuple[Path, Path]:
@@ -141,14 +94,6 @@ def _pair(text: str, option: str) -> tuple[Path, Path]:
     if not first or not second:
         raise InputError(f"{option} {text!r} is not understood; give MAP=OUT, e.g. height.png=height-tile.exr.")
     return Path(first), Path(second)
-
-
-def _read(photo: str, mask: Path | None) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-    """The photo (H, W, 3), linear, and what of it may be used (H, W)."""
-    from voldetail.image import load_masked, used_of
-
-    loaded = load_masked(photo, mask)
-    return loaded.pixels, used_of(loaded)
 
 
 def _read_map(path: Path, shape: tuple[int, ...], normals: bool) -> NDArray[np.float32]:
@@ -170,7 +115,7 @@ def _read_map(path: Path, shape: tuple[int, ...], normals: bool) -> NDArray[np.f
     return values if values.min() < 0 else 2 * values - 1  # files without negative numbers hold (n + 1) / 2
 
 
-def _write(tile: Tile, target: Path) -> None:
+def _write(tile: Tile, target: Path) -> Json:
     from voldetail.image import save_image
     from voldetail.report.facts import duration
 
@@ -183,6 +128,10 @@ def _write(tile: Tile, target: Path) -> None:
     )  # fmt: skip
     if tile.sentence:
         remarks().print(tile.sentence, markup=False, soft_wrap=True)
+    return {
+        "file": str(target), "columns": tile.tile.shape[1], "rows": tile.tile.shape[0], "sigma": tile.sigma,
+        "stationarity": costs.stationarity, "texture": costs.texture, "seconds": tile.seconds,
+    }  # fmt: skip
 
 
 def _write_map(tile: Tile, values: NDArray[np.float32], target: Path, normals: bool) -> None:

@@ -1,4 +1,4 @@
-"""`voldetail library`: libraries of procedural textures, built once and searched by `voldetail retrieve`."""
+"""`voldetail library build`: procedural textures or reliefs, drawn once, for `voldetail retrieve` and fits."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from voldetail.cli.building import teller
-from voldetail.cli.console import output, remarks
-from voldetail.cli.library_info import info, size_on_disk
+from voldetail.cli.console import output, remarks, result
+from voldetail.cli.library_words import make_index, size_on_disk
 from voldetail.errors import InputError
 from voldetail.records.nearest import nearest
 
@@ -24,14 +24,9 @@ MOST_WORKERS = 1024
 PROJECTED = 1_000_000
 """Entries, the largest databases of the paper's table 2 that are sampled at random."""
 
-library_app = typer.Typer(
-    name="library", help="Libraries of procedural textures: built once, searched by a photo.", no_args_is_help=True
-)
 
 
-@library_app.command()
 def build(
-    context: typer.Context,
     what: Annotated[
         list[str],
         typer.Argument(metavar="WHAT...", help="Names of structure models, or all; or relief, for fits to start from."),
@@ -74,7 +69,7 @@ def build(
     if plan.measure == "reliefs":
         from voldetail.cli.threads import use_threads
 
-        use_threads(context.obj)
+        use_threads()
     last: list[BuildProgress] = []
     with ProgressView(remarks()) as view:
         tell = teller(view, last)
@@ -93,20 +88,13 @@ def build(
     speed = ""
     if end.rate:
         speed = f": {end.rate:.3g} entries a second, a million would take {PROJECTED / end.rate / 3600:.2g} hours here"
-    output().print(
-        f"{out}  {plan.entries} entries, {size_on_disk(plan.bytes)}, {duration(end.seconds)}{speed}", markup=False, soft_wrap=True
-    )
+    record: dict[str, object] = {"folder": str(out), "entries": plan.entries, "bytes": plan.bytes, "seconds": end.seconds}
+    words = f"{out}  {plan.entries} entries, {size_on_disk(plan.bytes)}, {duration(end.seconds)}{speed}"
     if indexed:
-        _index(out)
-
-
-@library_app.command()
-def index(library: Annotated[Path, typer.Argument(metavar="LIB", help="A library, as library build makes it.")]) -> None:
-    """Make a library's index: of millions of entries, a query then compares those that are likely, and may miss some."""
-    _index(library)
-
-
-library_app.command()(info)
+        output().print(words, markup=False, soft_wrap=True)
+        file, words = make_index(out)
+        record["index"] = str(file)
+    result(record, words)
 
 
 def sources_of(what: list[str], sampling: str, seed: int) -> list[Source]:
@@ -156,16 +144,3 @@ def _check_room(out: Path, needed: int, part: Path) -> None:
             f"Cannot build {out}: {size_on_disk(2 * needed - there)} are needed there while building and "
             f"{size_on_disk(usage.free)} are free; free some space, give fewer --entries or another disk."
         )
-
-
-def _index(path: Path) -> None:
-    from voldetail.cli.progress import ProgressView
-    from voldetail.library.index import write_index
-    from voldetail.library.store import open_library
-
-    library = open_library(path)
-    with ProgressView(remarks()) as view:
-        view.step("making the index")
-        total = library.header.entries
-        made = write_index(library, lambda done: view.step(f"making the index: {done} of {total} entries"))
-    output().print(f"{made}  {size_on_disk(made.stat().st_size)}", markup=False, soft_wrap=True)

@@ -1,0 +1,1 @@
+"""Libraries of procedural textures: built once, searched by a photo."""

@@ -1,0 +1,1 @@
+"""A procedural colour texture from one photo: endless, a few numbers."""
