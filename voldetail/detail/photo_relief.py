@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from voldetail.detail.provenance import Provenance, Record, Sha256
-from voldetail.detail.record import LARGEST_SEED, Reflectance, ReliefParameters
+from voldetail.detail.record import LARGEST_SEED, Detail, Reflectance, ReliefParameters
 
 RELIEF_VERSION: Literal[1] = 1
 SMALLEST_SIDE, LARGEST_SIDE = 16, 16384
@@ -116,3 +116,22 @@ class MappedDetail:
     def placed(self, domain: Literal["solid", "surface"], arrangement: Arrangement) -> MappedDetail:
         """Return it for a shape that has two parameters or none, as the photo is or endless."""
         return replace(self, domain=domain, arrangement=arrangement)
+
+
+AnyDetail = Detail | MappedDetail
+"""A detail of either kind: what is rendered, relit and exported."""
+
+
+def domain_of(detail: AnyDetail) -> Literal["solid", "surface"]:
+    """Return the domain in which a surface is to be given to ``detail``."""
+    return detail.domain if isinstance(detail, MappedDetail) else detail.noise.domain
+
+
+def placed(detail: AnyDetail, *, flat: bool, parametrised: bool) -> AnyDetail:
+    """Return ``detail`` for a shape: the photo as it is on a plane, else endless, by two parameters where the shape has them.
+
+    A procedural detail is the same everywhere.
+    """
+    if not isinstance(detail, MappedDetail):
+        return detail
+    return detail.placed("surface" if flat or parametrised else "solid", "photo" if flat else "endless")

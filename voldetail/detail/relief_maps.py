@@ -19,7 +19,7 @@ def normals_of(height: NDArray[np.float32], texels_per_unit: float, *, periodic:
         below, above = np.roll(height, -1, axis=0), np.roll(height, 1, axis=0)
         p, q = (right - left) * (0.5 * texels_per_unit), (above - below) * (0.5 * texels_per_unit)
     else:
-        rows, columns = np.gradient(np.asarray(height, np.float64))
-        p, q = columns * texels_per_unit, -rows * texels_per_unit
-    length = np.sqrt(p * p + q * q + 1.0)
+        down, right_ward = np.gradient(np.asarray(height, np.float64))
+        p, q = np.asarray(right_ward) * texels_per_unit, np.asarray(down) * -texels_per_unit
+    length = np.asarray(np.sqrt(p * p + q * q + 1.0))
     return np.stack([-p / length, -q / length, 1.0 / length], axis=-1).astype(np.float32)

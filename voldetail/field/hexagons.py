@@ -64,5 +64,5 @@ def hashed_place(word: tuple[Any, Any], plane: int, seed: Any) -> tuple[Any, Any
     """Return two floats, uniform in [0, 1), for the corner ``word`` of the lattice on ``plane`` (0, 1, 2) under ``seed``."""
     uint_type = type(seed)
     a, b, _, _ = cell_hash(word[0], word[1], uint_type(plane), seed)
-    float_type = dr.float32_array_t(uint_type)
+    float_type: Any = dr.float32_array_t(uint_type)
     return float_type(a >> 8) * UNIT_24, float_type(b >> 8) * UNIT_24

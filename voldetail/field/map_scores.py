@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from scipy.ndimage import zoom
 from scipy.special import ndtr
 
+from voldetail.detail.parameters import LUMINANCE_WEIGHTS
 from voldetail.detail.photo_relief import MappedDetail
-from voldetail.detail.record import LUMINANCE_WEIGHTS
 
 CHANNELS = 4
 QUANTILES = 256

@@ -10,7 +10,7 @@ import numpy as np
 
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
-from voldetail.detail.photo_relief import MappedDetail
+from voldetail.detail.photo_relief import AnyDetail, MappedDetail
 from voldetail.field.albedo import coloured
 from voldetail.field.mapped import mapped_relief_and_albedo
 from voldetail.noise import (
@@ -57,7 +57,7 @@ def relief_quantiles(detail: Detail, side: float, shares: Sequence[float]) -> tu
 
 
 def relief_and_albedo(
-    detail: Detail | MappedDetail, domain: tuple[Any, ...], scale: float = 1.0, *, spacing: float = 0.0,
+    detail: AnyDetail, domain: tuple[Any, ...], scale: float = 1.0, *, spacing: float = 0.0,
     normals: tuple[Any, ...] | None = None,
 ) -> tuple[Any, Any | None]:
     """Return `relief_at` and the factor on the albedo (field.albedo): None for 1, an array, or three for colour.
