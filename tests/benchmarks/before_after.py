@@ -94,7 +94,7 @@ def main() -> None:
         print(json.dumps(record), flush=True)
         place = arguments.output if photograph.shown else arguments.unshown
         if place is not None:
-            save_sheet(place / photograph.name / "before_after.png", [pictures])
+            save_sheet(place / photograph.name / "before_after.jpg", [pictures])
     print(table(records))
     if not arguments.only:
         write_text(arguments.output / "before_after.json", json.dumps(records, indent=1) + "\n")

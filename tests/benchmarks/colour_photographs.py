@@ -22,6 +22,7 @@ from PIL import Image
 from tests.benchmarks import colour_sheets as sheets
 from tests.benchmarks.colour_judges import JUDGES
 from tests.benchmarks.colour_list import PHOTOS, ColourPhoto, Picture, crops, is_there, load
+from tests.benchmarks.kept import keep
 from tests.benchmarks.relit import markdown
 from tests.benchmarks.rivals.heeger_bergen import synthesise
 from voldetail.detail.colour import ColourTexture
@@ -55,7 +56,7 @@ def run(photo: ColourPhoto, output: Path, unshown: Path | None) -> dict[str, Any
             (f"{photo.name.replace('_', ' ')}: photograph", example), (f"ours, {numbers(texture)} numbers", ours),
             ("Heeger & Bergen 1995", rival),
         ]  # fmt: skip
-        sheets.save(place / f"{photo.name}.png", sheets.row(tiles))
+        keep(place / f"{photo.name}.jpg", sheets.row(tiles))
     return {
         "name": photo.name, "kind": photo.kind, "about": photo.about, "licence": photo.licence, "shown": photo.shown,
         "side": photo.side, "crops": len(others) + 1, "numbers": numbers(texture),
@@ -121,15 +122,15 @@ def table(records: Sequence[dict[str, Any]]) -> str:
 
 
 def overview(output: Path, records: Sequence[dict[str, Any]]) -> None:
-    """Write overview.png: the middle of photo, ours and Heeger & Bergen of all that may be shown."""
+    """Write overview.jpg: the middle of photo, ours and Heeger & Bergen of all that may be shown."""
     lines = []
     for record in records:
-        path = output / "rows" / f"{record['name']}.png"
+        path = output / "rows" / f"{record['name']}.jpg"
         if record["shown"] and path.exists():
             title = f"{record['name'].replace('_', ' ')}: photograph | ours | Heeger & Bergen"
             lines.append(sheets.tiles_of(Image.open(path).convert("RGB"), title, record["side"], OVERVIEW_SIDE))
     if lines:
-        sheets.save(output / "overview.png", sheets.stacked(lines, 2))
+        keep(output / "overview.jpg", sheets.stacked(lines, 2))
 
 
 def extras(output: Path, again: bool) -> None:
@@ -137,22 +138,22 @@ def extras(output: Path, again: bool) -> None:
     textures = {path.stem: load_example(path) for path in sorted((output / "textures").glob("*.json"))}
     needs = {"larger": (LARGER,), "morph": MORPHED, "edit": (EDITED,), "solid": CARVED}
     for name, wanted in needs.items():
-        path = output / f"{name}.png"
+        path = output / f"{name}.jpg"
         if not set(wanted) <= textures.keys() or (path.exists() and not again):
             continue
         chosen = [textures[one] for one in wanted]
         if name == "larger":
             photo = next(photo for photo in PHOTOS if photo.name == LARGER)
-            sheets.save(path, sheets.larger_row(crops(load(photo), photo.side)[0], chosen[0]))
+            keep(path, sheets.larger_row(crops(load(photo), photo.side)[0], chosen[0]))
         elif name == "morph":
             # Both of bands: lobes and bands cannot be mixed.
             found = [next(photo for photo in PHOTOS if photo.name == one) for one in wanted]
             plain = [analyse(crops(load(p), p.side)[0], name=p.name, directed=False) for p in found]
-            sheets.save(path, sheets.morph_row(*plain), exact=True)
+            keep(path, sheets.morph_row(*plain))
         elif name == "edit":
-            sheets.save(path, sheets.edit_row(*chosen), exact=True)
+            keep(path, sheets.edit_row(*chosen))
         else:
-            sheets.save(path, sheets.solid_row(chosen), exact=True)
+            keep(path, sheets.solid_row(chosen))
 
 
 def main() -> None:

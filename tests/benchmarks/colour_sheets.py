@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +19,6 @@ Captioned = tuple[str, Picture]
 GAP, LINE = 6, 18
 """Pixels between tiles, and of a line of caption."""
 
-SHEET_BYTES = 600_000
 STEPS = 6
 STEP_SIDE = 192
 
@@ -45,19 +43,6 @@ def stacked(rows: Sequence[Image.Image], columns: int = 1) -> Image.Image:
     for k, one in enumerate(rows):
         page.paste(one, (k // lines * (width + 3 * GAP), k % lines * height))
     return page
-
-
-def save(path: Path, page: Image.Image, *, exact: bool = False) -> None:
-    """Save a page in as many colours as keep it small; `exact`: in its own, if those do."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    if exact:
-        page.save(path, optimize=True)
-        if path.stat().st_size <= SHEET_BYTES:
-            return
-    for colours in (256, 128, 64, 32):
-        page.quantize(colours, kmeans=1, dither=Image.Dither.NONE).save(path, optimize=True)
-        if path.stat().st_size <= SHEET_BYTES:
-            return
 
 
 def tiles_of(page: Image.Image, title: str, side: int, size: int, count: int = 3) -> Image.Image:

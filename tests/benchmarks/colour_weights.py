@@ -24,10 +24,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
+from tests.benchmarks.kept import keep_linear
 from voldetail.backend import mitsuba
 from voldetail.detail.colour import ColourTexture
 from voldetail.files import write_text
-from voldetail.image import load_photo, save_png, to_srgb
+from voldetail.image import load_photo, to_srgb
 from voldetail.noise.wavelet import wavelet_noise
 from voldetail.noise.wavelet_spectrum import variance
 from voldetail.texture import analyse, colour_at, picture
@@ -208,7 +209,7 @@ def main() -> None:
         arguments.output.mkdir(parents=True, exist_ok=True)
         write_text(arguments.output / "colour_weights.json", text)
         draw(record["weights"], arguments.output / "colour_weights.png")
-        save_png(arguments.output / "colour_grazing.png", shown)
+        keep_linear(arguments.output / "colour_grazing.jpg", shown)
 
 
 if __name__ == "__main__":

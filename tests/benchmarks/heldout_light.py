@@ -228,7 +228,7 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
         rows.append([seen.pixels, *(_toned(picture, seen) for picture in pictures.values())])
     if sheets is not None:
         held = sorted((i for i, light in enumerate(lights) if light["held_out"]), key=lambda i: -lights[i]["turned"])
-        save_sheet(sheets / f"heldout_light_{capture.name}.png", [rows[i] for i in held[:SHOWN_LIGHTS]])
+        save_sheet(sheets / f"heldout_light_{capture.name}.jpg", [rows[i] for i in held[:SHOWN_LIGHTS]])
     return {
         "capture": capture.name, "about": capture.about, "credit": capture.credit, "zone": list(target.zone),
         "trained": first.name, "evaluations": result.evaluations, "seconds": round(result.seconds, 1), "lights": lights,

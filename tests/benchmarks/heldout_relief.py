@@ -177,7 +177,7 @@ def run(scan: Scan, evaluations: int | None, sheets: Path | None) -> dict[str, A
         if (azimuth, elevation) in ((225.0, 40.0), GRAZING):
             rows.append([true, pictures["fit"]])
     if sheets is not None:
-        save_sheet(sheets / f"heldout_relief_{scan.name}.png", [[picture for row in rows for picture in row]])
+        save_sheet(sheets / f"heldout_relief_{scan.name}.jpg", [[picture for row in rows for picture in row]])
     true_heights = heights_of(truth)
     needed = float(true_heights.std() / heights_of(fitted).std())
     assert result.heights is not None

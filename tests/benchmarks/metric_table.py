@@ -16,6 +16,7 @@ from PIL import Image, ImageDraw
 from tests.benchmarks import texture_families
 from tests.benchmarks import texture_pictures as pictures
 from tests.benchmarks.grain import grain_check
+from tests.benchmarks.kept import keep
 from tests.benchmarks.searched_decoys import searched
 from tests.benchmarks.yardsticks import YARDSTICKS, distances, reference
 from voldetail.files import write_text
@@ -136,7 +137,7 @@ def sheet(photos: dict[str, pictures.Picture], path: Path) -> None:
             ImageDraw.Draw(image).text((2, 0), title, fill=0, spacing=0)
             tiles.append(np.asarray(image))
         rows.append(np.hstack(tiles))
-    Image.fromarray(np.vstack(rows)).save(path, optimize=True)
+    keep(path, Image.fromarray(np.vstack(rows)))
 
 
 def table(scores: dict[str, Any]) -> str:
@@ -173,7 +174,7 @@ def main() -> None:
     write_text(RESULTS / "table.md", table(scores))
     write_text(RESULTS / "paper_check.json", json.dumps(paper_check(photos), indent=1) + "\n")
     write_text(RESULTS / "grain.json", json.dumps(grain_check(photos), indent=1) + "\n")
-    sheet(photos, RESULTS / "decoys.png")
+    sheet(photos, RESULTS / "decoys.jpg")
     print(table(scores))
 
 

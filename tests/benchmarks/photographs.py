@@ -17,12 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from tests.benchmarks.kept import keep, keep_linear
 from tests.benchmarks.relit import SHARED
 from voldetail.apply import gallery
 from voldetail.detail import save_detail
 from voldetail.files import write_text
 from voldetail.fit import fit
-from voldetail.image import resize, save_image
+from voldetail.image import resize
 from voldetail.report import write_report
 from voldetail.setup.file import setup_from
 from voldetail.setup.setup import Setup
@@ -95,10 +96,11 @@ def run(photograph: Photograph, output: Path, unshown: Path | None) -> dict[str,
         _, sheet = write_report(place, result, pictures)
         # The page is as large as all its pictures; the sheet, with fewer colours, is what is kept.
         (place / "report.html").unlink()
-        Image.open(sheet).convert("RGB").quantize(128, dither=Image.Dither.NONE).save(sheet, optimize=True)
+        keep(place / "sheet.jpg", Image.open(sheet))
+        sheet.unlink()
         if photograph.shown:
             sphere = _fitting(pictures.sphere, pictures.photo)
-            save_image(place / "fit.png", np.concatenate([pictures.photo, pictures.fitted, sphere], axis=1))
+            keep_linear(place / "fit.jpg", np.concatenate([pictures.photo, pictures.fitted, sphere], axis=1))
     floor = result.detail.noise_floor
     return {
         "name": photograph.name, "light": photograph.light, "light_is": photograph.about, "credit": photograph.credit,
@@ -113,15 +115,15 @@ def _fitting(picture: NDArray[np.float32], like: NDArray[np.float32]) -> NDArray
 
 
 def overview(folder: Path, names: tuple[str, ...]) -> None:
-    """Write overview.png: photo, fit and sphere of each name, two to a row."""
-    tiles = [Image.open(folder / name / "fit.png").convert("RGB") for name in names if (folder / name / "fit.png").exists()]
+    """Write overview.jpg: photo, fit and sphere of each name, two to a row."""
+    tiles = [Image.open(folder / name / "fit.jpg").convert("RGB") for name in names if (folder / name / "fit.jpg").exists()]
     if not tiles:
         return
     width, height = max(t.width for t in tiles), max(t.height for t in tiles)
     page = Image.new("RGB", (2 * width + 24, (len(tiles) + 1) // 2 * (height + 12)), "white")
     for index, tile in enumerate(tiles):
         page.paste(tile, ((index % 2) * (width + 24), index // 2 * (height + 12)))
-    page.quantize(192, dither=Image.Dither.NONE).save(folder / "overview.png", optimize=True)
+    keep(folder / "overview.jpg", page)
 
 
 def main() -> None:

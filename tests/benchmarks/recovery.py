@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tests.benchmarks.kept import keep_linear
 from tests.benchmarks.relit import height_record, heights_of
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail, Reflectance, rounded
@@ -22,7 +23,7 @@ from voldetail.files import write_text
 from voldetail.fit import fit
 from voldetail.fit.session import derived_seed
 from voldetail.fit.space import Kind, Space
-from voldetail.image import Photo, luminance, save_png, to_linear, to_srgb
+from voldetail.image import Photo, luminance, to_linear, to_srgb
 from voldetail.metric import describe, distance
 from voldetail.render.build import build
 from voldetail.render.heightfield import HeightField
@@ -151,7 +152,7 @@ def main() -> None:
         write_text(arguments.output / "recovery.json", json.dumps({"summary": summary, "cases": records}, indent=1) + "\n")
         grid = [np.concatenate(rows[i : i + 3], axis=1) for i in range(0, len(rows), 3)]
         if grid:
-            save_png(arguments.output / "recovery.png", np.concatenate(grid))
+            keep_linear(arguments.output / "recovery.jpg", np.concatenate(grid))
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.ndimage import binary_erosion, gaussian_filter, map_coordinates
 
+from tests.benchmarks.kept import keep
 from tests.benchmarks.yardsticks import reference
 from voldetail.backend import mitsuba
 from voldetail.detail import Reflectance
@@ -35,8 +36,6 @@ BRIGHTNESS_BLUR = 1.0
 SIDE_BLUR = 1.0
 """Pixels of blur for `side`: on the pebble wall's four photos one pixel tells the sides apart best, of 1, 2 and 4."""
 
-SHEET_BYTES = 300_000
-"""A sheet kept in results/ is no larger."""
 
 
 class Yardstick:
@@ -143,24 +142,13 @@ def reflectance_under(surface: HeightField, target: Target, *, specular: bool) -
 
 
 def save_sheet(path: Path, rows: Sequence[Sequence[Picture]], gap: int = 4) -> None:
-    """Save pictures (H, W, 3), linear, as a table with white gaps, in as many colours as keep it small."""
+    """Save pictures (H, W, 3), linear, as a table with white gaps."""
     lines = []
     for row in rows:
         spaced = [np.pad(np.clip(to_srgb(p), 0, 1), ((0, gap), (0, gap), (0, 0)), constant_values=1) for p in row]
         lines.append(np.concatenate(spaced, axis=1))
     page = Image.fromarray(np.round(np.concatenate(lines) * 255).astype(np.uint8))
-    path.parent.mkdir(parents=True, exist_ok=True)
-    if path.suffix == ".jpg":
-        # Where colours are what is looked at: a palette of the sheet's would merge them.
-        for quality in (92, 84, 72, 60):
-            page.save(path, quality=quality, optimize=True)
-            if path.stat().st_size <= SHEET_BYTES:
-                return
-        return
-    for colours in (128, 64, 32, 16):
-        page.quantize(colours, dither=Image.Dither.NONE).save(path, optimize=True)
-        if path.stat().st_size <= SHEET_BYTES:
-            return
+    keep(path, page)
 
 
 def markdown(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:

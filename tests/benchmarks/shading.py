@@ -14,10 +14,11 @@ from typing import Any
 
 import numpy as np
 
+from tests.benchmarks.kept import keep_linear
 from voldetail.apply import render
 from voldetail.detail import Detail, with_values
 from voldetail.files import write_text
-from voldetail.image import luminance, save_png
+from voldetail.image import luminance
 from voldetail.setup.light import parse_light
 
 SIDE = 256
@@ -47,7 +48,7 @@ def main() -> None:
             "mean_phong": round(float(one[inside].mean()), 4), "mean_principled": round(float(other[inside].mean()), 4),
             "mean_difference": round(float(np.abs(one - other)[inside].mean()), 4),
         }
-    save_png(arguments.output / "phong_principled.png", np.concatenate(rows))
+    keep_linear(arguments.output / "phong_principled.jpg", np.concatenate(rows))
     write_text(arguments.output / "shading.json", json.dumps(record, indent=1) + "\n")
     print(json.dumps(record, indent=1))
 

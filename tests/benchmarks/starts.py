@@ -17,6 +17,7 @@ from unittest.mock import patch
 
 from PIL import Image
 
+from tests.benchmarks.kept import keep
 from tests.benchmarks.photographs import PHOTOGRAPHS, Photograph, is_there, setup_of
 from voldetail.backend import mitsuba
 from voldetail.files import write_text
@@ -108,7 +109,7 @@ def main() -> None:
         print(photograph.name, {how: {k: v for k, v in r.items() if k != "curve"} for how, r in records[photograph.name].items()})
         write_text(path, json.dumps({"summary": summary(records), "photographs": records}, indent=1) + "\n")
         if photograph.shown:
-            strip(photograph, [with_library, without]).save(options.output / f"{photograph.name}.png", optimize=True)
+            keep(options.output / f"{photograph.name}.jpg", strip(photograph, [with_library, without]))
     print(json.dumps(summary(records), indent=1))
 
 

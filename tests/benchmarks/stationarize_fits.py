@@ -109,7 +109,7 @@ def main() -> None:
         print(json.dumps(record), flush=True)
     print(table(records))
     if arguments.unshown is not None:
-        save_sheet(arguments.unshown / "fits.png", rows)
+        save_sheet(arguments.unshown / "fits.jpg", rows)
     write_text(arguments.output / "fits.json", json.dumps(records, indent=1) + "\n")
     write_text(arguments.output / "fits.md", table(records))
 

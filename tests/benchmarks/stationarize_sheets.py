@@ -50,7 +50,7 @@ def sheet(path: Path, photograph: Photograph, photo: Picture, tiles: dict[str, P
         _show(axes[0, i + 1], np.tile(tile, (2, 2, 1)), f"{names[way]}, 2 x 2")
         _show(axes[1, i + 1], plane(tile), "on a plane")
     figure.tight_layout()
-    figure.savefig(path, dpi=80, pil_kwargs={"quality": 80} if path.suffix == ".jpg" else None)
+    figure.savefig(path, dpi=80, pil_kwargs={"quality": 72} if path.suffix == ".jpg" else None)
     plt.close(figure)
 
 

@@ -21,12 +21,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from tests.benchmarks.kept import keep, keep_linear
 from tests.benchmarks.relit import SHARED
 from voldetail.apply import render
 from voldetail.detail import Detail, load_detail, save_detail
 from voldetail.files import write_text
 from voldetail.fit import FitResult, fit
-from voldetail.image import load_photo, resize, save_image, save_png
+from voldetail.image import load_photo, resize, save_image
 from voldetail.setup.file import setup_from
 from voldetail.setup.light import parse_light
 
@@ -126,13 +127,13 @@ def main() -> None:
         folder.mkdir(parents=True, exist_ok=True)
         if arguments.again:
             detail = load_detail(folder / "detail.json")
-            pair = load_photo(folder / "pair.png").pixels
+            pair = load_photo(folder / "pair.jpg").pixels
             photo, fitted = np.split(pair, 2, axis=1)
         else:
             result = run(case)
             detail, photo, fitted = result.detail, result.target.pixels, result.coloured
             save_detail(folder / "detail.json", detail)
-            save_png(folder / "pair.png", np.concatenate([photo, fitted], axis=1))
+            keep_linear(folder / "pair.jpg", np.concatenate([photo, fitted], axis=1))
             floor = detail.noise_floor
             records.append({
                 "name": case.name, "look": case.look, "light": case.light, "credit": case.credit, "M": round(result.distance, 3),
@@ -147,7 +148,7 @@ def main() -> None:
             begun = time.monotonic()
             save_image(path, sheet(detail, case, photo, fitted))
             print(f"{case.name}: sheet in {time.monotonic() - begun:.0f} s", flush=True)
-            Image.open(path).convert("RGB").quantize(192, dither=Image.Dither.NONE).save(folder / "sheet.png", optimize=True)
+            keep(folder / "sheet.jpg", Image.open(path))
     table = arguments.output / "photographs.json"
     known = {record["name"]: record for record in json.loads(table.read_text())} if table.exists() else {}
     known |= {record["name"]: record for record in records}

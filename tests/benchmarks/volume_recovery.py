@@ -18,6 +18,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tests.benchmarks.kept import keep_linear
 from tests.benchmarks.recovery import OTHER_SEEDS, RANKS, SIDE
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail, Reflectance, rounded
@@ -166,7 +167,7 @@ def main() -> None:
                 "median_seconds": round(float(np.median(seconds)), 1),
             }
             grid = [np.concatenate(rows[i : i + 2], axis=1) for i in range(0, len(rows) - len(rows) % 2, 2)] or rows
-            save_png(arguments.output / f"recovery_{look}.png", np.concatenate(grid))
+            keep_linear(arguments.output / f"recovery_{look}.jpg", np.concatenate(grid))
     print(json.dumps(summary))
     if not arguments.case and not arguments.look:
         text = json.dumps({"summary": summary, "cases": records}, indent=1)

@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 from voldetail import detail as details
 from voldetail import image
 from voldetail.detail import Detail
+from voldetail.detail.photo_relief import AnyDetail
 from voldetail.errors import InputError
 from voldetail.geometry import meshes
 from voldetail.geometry.meshes import Mesh
 from voldetail.image import MaskLike, Photo, PhotoLike, load_masked
 from voldetail.image.load import Encoding
+from voldetail.recover.files import load_any
 from voldetail.setup import file as setup_files
 from voldetail.setup.setup import Setup
 
@@ -57,8 +59,8 @@ def save_image(path: str | Path, linear: NDArray[np.floating]) -> None:
     image.save_image(path, pixels)
 
 
-def load_detail(path: str | Path) -> Detail:
-    """Return the detail in a file.
+def load_detail(path: str | Path) -> AnyDetail:
+    """Return the detail in a file, or the photo's relief in a `relief.json` or its folder.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -68,7 +70,7 @@ def load_detail(path: str | Path) -> Detail:
 
     Raises InputError for a file that is missing or no detail.
     """
-    return details.load_detail(path)
+    return load_any(path)
 
 
 def save_detail(path: str | Path, detail: Detail) -> None:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from voldetail import apply, report
 from voldetail.api.inputs import LightLike, ShapeLike, as_light, as_shape, checked_scale
 from voldetail.detail import Detail
+from voldetail.detail.photo_relief import AnyDetail
 from voldetail.errors import InputError
 from voldetail.export import ExportOptions
 from voldetail.export import export as exported
@@ -28,7 +29,7 @@ UPRIGHT: Rotation = (0.0, 0.0, 0.0)
 
 
 def render(
-    detail: Detail, shape: ShapeLike = "sphere", *, light: LightLike | None = None, envmap: str | Path | None = None,
+    detail: AnyDetail, shape: ShapeLike = "sphere", *, light: LightLike | None = None, envmap: str | Path | None = None,
     scale: float = 1.0, size: tuple[int, int] = (640, 480), camera: CameraSetup | None = None, rotation: Rotation = UPRIGHT,
     subsamples: int = 2, samples: int = 64, shading: Shading = "phong", background: float | Colour = 0.0,
 ) -> Picture:
@@ -55,7 +56,7 @@ def render(
 
 
 def relight(
-    detail: Detail, shape: ShapeLike = "plane", *, azimuths: Sequence[float], elevations: Sequence[float], scale: float = 1.0,
+    detail: AnyDetail, shape: ShapeLike = "plane", *, azimuths: Sequence[float], elevations: Sequence[float], scale: float = 1.0,
     size: tuple[int, int] = (480, 480), camera: CameraSetup | None = None, rotation: Rotation = UPRIGHT, subsamples: int = 2,
     background: float | Colour = 0.0,
 ) -> Iterator[tuple[float, float, Picture]]:
@@ -89,7 +90,7 @@ def bake(
 
 
 def export(
-    detail: Detail, shape: ShapeLike, path: str | Path, *, cells: int = 128, scale: float = 1.0, rotation: Rotation = UPRIGHT
+    detail: AnyDetail, shape: ShapeLike, path: str | Path, *, cells: int = 128, scale: float = 1.0, rotation: Rotation = UPRIGHT
 ) -> str:
     """Write a detail on a shape for other programs, in the format that the file's suffix names; return a line about it.
 

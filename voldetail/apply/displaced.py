@@ -7,16 +7,17 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from voldetail.apply.onmesh import proxy_of
+from voldetail.apply.onmesh import on_shape, proxy_of
 from voldetail.backend import mitsuba
-from voldetail.detail import Detail
+from voldetail.detail.photo_relief import AnyDetail, domain_of
 from voldetail.errors import InputError
-from voldetail.field.relief import relief_at
+from voldetail.field.relief import relief_and_albedo
 from voldetail.geometry.proxy import make_proxy
 
 
 def displaced_mesh(
-    detail: Detail, shape: str | Path, *, edge: float, scale: float = 1.0, rotation: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    detail: AnyDetail, shape: str | Path, *, edge: float, scale: float = 1.0,
+    rotation: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
     """Return vertices (V, 3) and faces (F, 3) of ``shape`` displaced by ``detail``, P' = P + A_d R(P) N_P (GD10 section 6).
 
@@ -26,7 +27,11 @@ def displaced_mesh(
     if detail.mode != "displacement":
         raise InputError("The detail is a volume and displaces no surface; export it as densities, with the suffix .vol.")
     mi = mitsuba()
-    bare = make_proxy(proxy_of(shape, rotation), edge, detail.noise.domain)
+    proxy = proxy_of(shape, rotation)
+    detail = on_shape(detail, proxy)
+    bare = make_proxy(proxy, edge, domain_of(detail))
     domain = tuple(mi.Float(np.ascontiguousarray(bare.domain[:, axis])) for axis in range(3))
-    height = relief_at(detail, domain, scale).numpy() * (detail.relief.amplitude * scale)
+    normals = tuple(mi.Float(np.ascontiguousarray(v)) for v in bare.own_normals.T)
+    relief, _ = relief_and_albedo(detail, domain, scale, spacing=edge, normals=normals)
+    height = relief.numpy() * (detail.relief.amplitude * scale)
     return (bare.positions + height[:, None] * bare.normals).astype(np.float32), bare.faces

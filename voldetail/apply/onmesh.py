@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.apply.volumes import Progress, Tell, place, quiet, solid_surface, traced_medium, unseen
-from voldetail.detail import Detail
+from voldetail.detail.photo_relief import AnyDetail, MappedDetail, domain_of, placed
 from voldetail.errors import InputError
 from voldetail.field.albedo import patterned
+from voldetail.geometry.primitives.primitive import primitive_of
 from voldetail.geometry.proxy import make_proxy
 from voldetail.render.environment import environment_emitter
 from voldetail.render.mesh_surface import MeshSurface, TracedMesh
@@ -41,7 +42,7 @@ PIXELS_AN_EDGE = 1.0
 
 
 def render(
-    detail: Detail, mesh: str | Path = "sphere", *, light: Light | None = None, envmap: Path | None = None,
+    detail: AnyDetail, mesh: str | Path = "sphere", *, light: Light | None = None, envmap: Path | None = None,
     scale: float = 1.0, size: tuple[int, int] = (640, 480), camera: CameraSetup | None = None,
     rotation: tuple[float, float, float] = (0.0, 0.0, 0.0), subsamples: int = 2, samples: int = 64,
     shading: Shading = "phong", background: float | Colour = 0.0, edge: float = PIXELS_AN_EDGE, tell: Tell = quiet,
@@ -88,7 +89,7 @@ def render(
 
 
 def relight(
-    detail: Detail, mesh: str | Path = "plane", *, azimuths: Sequence[float], elevations: Sequence[float],
+    detail: AnyDetail, mesh: str | Path = "plane", *, azimuths: Sequence[float], elevations: Sequence[float],
     scale: float = 1.0, size: tuple[int, int] = (480, 480), camera: CameraSetup | None = None,
     rotation: tuple[float, float, float] = (0.0, 0.0, 0.0), subsamples: int = 2, background: float | Colour = 0.0,
     tell: Tell = quiet,
@@ -123,12 +124,14 @@ def _flat(mesh: str | Path) -> bool:
     return kind is not None and SHAPES[kind].flat
 
 
-def _view(detail: Detail, scale: float, mesh: str | Path, size: tuple[int, int], camera: CameraSetup | None) -> View:
+def _view(detail: AnyDetail, scale: float, mesh: str | Path, size: tuple[int, int], camera: CameraSetup | None) -> View:
     columns, rows = size
     if not (16 <= columns <= 8192 and 16 <= rows <= 8192):
         raise InputError(f"The size {columns}x{rows} is out of range: each side has to be 16 to 8192 pixels.")
     if _flat(mesh):
-        return whole_view(columns, rows, camera, FLAT_MARGIN)
+        # A photo's relief is seen as the photo was: its longest side is 2 units, where a plane's picture has its shortest so.
+        whole = min(size) / max(size) if isinstance(detail, MappedDetail) else FLAT_MARGIN
+        return whole_view(columns, rows, camera, whole)
     rises = 0.0
     if detail.mode == "volume":
         # What is seen of a cloud begins about where its density is half.
@@ -146,6 +149,13 @@ def _proxy(mesh: str | Path, view: View, rotation: tuple[float, float, float]) -
     return proxy, False
 
 
+def on_shape(detail: AnyDetail, proxy: ProxySetup) -> AnyDetail:
+    """Return ``detail`` as it goes onto a shape, see `placed`."""
+    if not isinstance(detail, MappedDetail):
+        return detail
+    return placed(detail, flat=proxy.row.flat, parametrised=primitive_of(proxy).parametrised)
+
+
 def proxy_of(mesh: str | Path, rotation: tuple[float, float, float]) -> ProxySetup:
     """Return the proxy for a kind of shape or a mesh file."""
     kind = simple_kind(str(mesh))
@@ -155,7 +165,7 @@ def proxy_of(mesh: str | Path, rotation: tuple[float, float, float]) -> ProxySet
 
 
 def _surface(
-    detail: Detail, mesh: str | Path, view: View, proxy: ProxySetup, whole_plane: bool, scale: float, edge: float, tell: Tell,
+    detail: AnyDetail, mesh: str | Path, view: View, proxy: ProxySetup, whole_plane: bool, scale: float, edge: float, tell: Tell,
     bsdf: dict[str, Any] | None = None, emitters: dict[str, Any] | None = None, on_progress: Progress = unseen,
 ) -> TracedMesh:
     """Return the surface of ``detail``: the displaced proxy, or that of solid matter."""
@@ -164,21 +174,22 @@ def _surface(
         filling = whole_plane and not view.perspective
         volume = place(detail, proxy, view, scale=scale, whole_plane=filling, edge=edge * view.pixel, tell=tell)
         return solid_surface(detail, volume, bsdf=bsdf, emitters=emitters, on_progress=on_progress)
-    made = make_proxy(proxy, edge * view.pixel, detail.noise.domain)
+    detail = on_shape(detail, proxy)
+    made = make_proxy(proxy, edge * view.pixel, domain_of(detail))
     surface = MeshSurface(made, view, scale=scale, bsdf=bsdf, emitters=emitters, one_sided_sky=_flat(mesh))
     surface.update(detail)
     return surface
 
 
 def _lit(
-    detail: Detail, surface: TracedMesh | Volume, lamp: Lamp, subsamples: int, background: float | Colour
+    detail: AnyDetail, surface: TracedMesh | Volume, lamp: Lamp, subsamples: int, background: float | Colour
 ) -> Picture:
     """Return the picture under one light and the detail's own sky, without noise."""
     parts = components(surface, lamp, subsamples=subsamples, shininess=(detail.reflectance.shininess,))
     return parts.colour(detail.reflectance, background)
 
 
-def _bsdf(detail: Detail, shading: Shading) -> dict[str, Any]:
+def _bsdf(detail: AnyDetail, shading: Shading) -> dict[str, Any]:
     r = detail.reflectance
     diffuse: Diffuse = [min(r.diffuse * c, 1.0) for c in r.tint]
     if patterned(detail):

@@ -11,7 +11,7 @@ from voldetail.cli.arguments import mesh, numbers
 from voldetail.cli.console import remarks
 from voldetail.setup.shapes import SHAPE_WORDS, SIMPLE_KINDS
 
-DETAIL_HELP = "A detail file, as fit makes it."
+DETAIL_HELP = "A detail file, as fit makes it, or a relief.json of relief, or its folder."
 MESH_HELP = f"{SHAPE_WORDS}, or a mesh or density (.vol) file."
 
 DetailFile = Annotated[Path, typer.Argument(help=DETAIL_HELP)]

@@ -10,7 +10,7 @@ from voldetail.cli.arguments import numbers
 from voldetail.errors import InputError
 
 if TYPE_CHECKING:
-    from voldetail.detail import Detail
+    from voldetail.detail.photo_relief import AnyDetail
     from voldetail.setup.setup import CameraSetup
 
 BRIGHTEST = 1e3
@@ -34,7 +34,7 @@ def camera_of(fov: float | None) -> CameraSetup | None:
     return None if fov is None else CameraSetup(kind="perspective", field_of_view=fov)
 
 
-def background_of(text: str, record: Detail) -> tuple[float, float, float]:
+def background_of(text: str, record: AnyDetail) -> tuple[float, float, float]:
     """The colour behind: from a number, R,G,B, or "photo"."""
     if text == "photo":
         found = record.provenance.settings.get("background") if record.provenance else None

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from voldetail.detail import Detail
+from voldetail.detail.photo_relief import AnyDetail
 from voldetail.errors import InputError
 from voldetail.export import density, mesh
 from voldetail.export.options import ExportOptions
 
-Writer = Callable[[Path, Detail, str | Path, ExportOptions], str]
+Writer = Callable[[Path, AnyDetail, str | Path, ExportOptions], str]
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ def suffixes() -> tuple[str, ...]:
     return tuple(suffix for row in FORMATS for suffix in row.suffixes)
 
 
-def export(detail: Detail, shape: str | Path, path: str | Path, options: ExportOptions | None = None) -> str:
+def export(detail: AnyDetail, shape: str | Path, path: str | Path, options: ExportOptions | None = None) -> str:
     """Write ``detail`` on ``shape`` (a kind or a mesh file) to ``path`` in the format of its suffix; return a line about it.
 
     Raises InputError for a suffix that is not known, and for what the format cannot hold.

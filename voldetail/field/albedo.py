@@ -13,6 +13,7 @@ from typing import Any
 import drjit as dr
 
 from voldetail.detail import Detail
+from voldetail.detail.photo_relief import AnyDetail, MappedDetail
 from voldetail.texture import CURVE_PROBABILITIES, colour_at
 
 Factor = Any
@@ -21,8 +22,10 @@ LEAST_ALBEDO = 1e-4
 """Kd times tint below which no factor on it can make an albedo over 1 that is seen."""
 
 
-def patterned(detail: Detail) -> bool:
+def patterned(detail: AnyDetail) -> bool:
     """Return whether the albedo of ``detail`` varies."""
+    if isinstance(detail, MappedDetail):
+        return True
     r = detail.reflectance
     return detail.colour is not None or any((r.height_albedo, r.cell_albedo, r.speckle))
 
@@ -83,7 +86,7 @@ def factor_of(arrays: list[Any]) -> Any:
     return arrays[0] if len(arrays) == 1 else tuple(arrays)
 
 
-def diffuse_of(detail: Detail, albedo: Factor) -> tuple[Any, ...]:
+def diffuse_of(detail: AnyDetail, albedo: Factor) -> tuple[Any, ...]:
     """Return the diffuse albedo Kd tint f in [0, 1] of each point, in three arrays."""
     r = detail.reflectance
     own = factors_of(albedo)

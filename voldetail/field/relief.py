@@ -10,7 +10,9 @@ import numpy as np
 
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
+from voldetail.detail.photo_relief import AnyDetail, MappedDetail
 from voldetail.field.albedo import coloured
+from voldetail.field.mapped import mapped_relief_and_albedo
 from voldetail.noise import (
     OCTAVE_NUMBERS,
     NoiseSettings,
@@ -55,12 +57,15 @@ def relief_quantiles(detail: Detail, side: float, shares: Sequence[float]) -> tu
 
 
 def relief_and_albedo(
-    detail: Detail, domain: tuple[Any, ...], scale: float = 1.0, *, spacing: float = 0.0, normals: tuple[Any, ...] | None = None
+    detail: AnyDetail, domain: tuple[Any, ...], scale: float = 1.0, *, spacing: float = 0.0,
+    normals: tuple[Any, ...] | None = None,
 ) -> tuple[Any, Any | None]:
     """Return `relief_at` and the factor on the albedo (field.albedo): None for 1, an array, or three for colour.
 
     ``spacing`` of the points in scene units, between which colour is averaged; ``normals`` of the bare shape in the domain.
     """
+    if isinstance(detail, MappedDetail):
+        return mapped_relief_and_albedo(detail, domain, scale, spacing=spacing, normals=normals)
     relief, owner = _relief(detail, domain, scale)
     float_type: Any = type(domain[0])
     reflectance, points, seed = detail.reflectance, _points(detail, domain), _seed(detail, float_type)

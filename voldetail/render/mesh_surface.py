@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.backend import mitsuba
-from voldetail.detail import Detail
+from voldetail.detail.photo_relief import AnyDetail
 from voldetail.field.albedo import diffuse_of, factor_of, factors_of
 from voldetail.field.hypertexture import Hypertexture
 from voldetail.field.relief import relief_and_albedo
@@ -69,7 +69,7 @@ class TracedMesh:
             {"type": "scene", "embree_use_robust_intersections": True, SHAPE: mesh, **self._emitters}
         )
 
-    def _diffuse(self, detail: Detail) -> tuple[Any, ...] | None:
+    def _diffuse(self, detail: AnyDetail) -> tuple[Any, ...] | None:
         """Return the albedo of the vertices where a BSDF is to take it from them."""
         return None if self._bsdf is None or self.albedo is None else diffuse_of(detail, self.albedo)
 
@@ -152,7 +152,7 @@ class MeshSurface(TracedMesh):
         self._own_normals = tuple(mi.Float(np.ascontiguousarray(v)) for v in proxy.own_normals.T)
         self._parameters: Any = None
 
-    def update(self, detail: Detail) -> None:
+    def update(self, detail: AnyDetail) -> None:
         """Displace the mesh by the relief of ``detail``."""
         mi = mitsuba()
         relief, self.albedo = relief_and_albedo(

@@ -11,7 +11,6 @@ from voldetail.cli.console import remarks, result
 from voldetail.cli.outputs import check_file
 from voldetail.cli.shape_options import MESH_HELP, DetailFile, Rotation, Scale, rotation_of, shape_of, tell
 from voldetail.cli.threads import use_threads
-from voldetail.detail import load_detail
 
 
 def bake(
@@ -29,9 +28,10 @@ def bake(
 ) -> None:
     """Bake a volumetric detail on a closed shape to a grid of densities from 0 to 1, or relief to a displaced mesh."""
     from voldetail.export import ExportOptions, export
+    from voldetail.recover.files import load_any
 
     check_file(out)
-    record, shape = load_detail(detail), shape_of(shape)
+    record, shape = load_any(detail), shape_of(shape)
     options = ExportOptions(cells=cells, scale=scale, rotation=rotation_of(rotation), tell=tell)
     use_threads()
     with remarks().status(f"baking {shape}"):

@@ -13,7 +13,6 @@ from voldetail.cli.outputs import check_folder, make_folder, remove
 from voldetail.cli.shape_options import MESH_HELP, DetailFile, Rotation, Scale, rotation_of, shape_of, tell
 from voldetail.cli.threads import use_threads
 from voldetail.cli.view_options import Background, Fov, Subsamples, background_of, camera_of
-from voldetail.detail import load_detail
 from voldetail.errors import InputError
 
 ANIMATION_SECONDS = 0.12  # a frame
@@ -45,9 +44,10 @@ def relight(
     Each elevation is gone through with every azimuth. Without MESH it is a plane that fills the picture.
     """
     from voldetail.apply import relight as frames_of
+    from voldetail.recover.files import load_any
 
     azimuths = angles(azimuth, "--azimuth", lambda a: -720 <= a <= 720, "-720 to 720")
-    record = load_detail(detail)
+    record = load_any(detail)
     if record.medium is None:
         elevations = angles(elevation, "--elevation", lambda e: 0 < e <= 90, "over 0 to 90 (below for media alone)")
     else:

@@ -13,7 +13,6 @@ from voldetail.cli.outputs import check_file
 from voldetail.cli.shape_options import MESH_HELP, DetailFile, Rotation, Scale, rotation_of, shape_of, tell
 from voldetail.cli.threads import use_threads
 from voldetail.cli.view_options import Background, Fov, Subsamples, background_of, camera_of
-from voldetail.detail import load_detail
 from voldetail.errors import InputError
 from voldetail.setup.lights.table import FORMS_PLACED as RENDER_LIGHTS
 
@@ -44,12 +43,13 @@ def render(
     """Render a detail on a shape, under a light or an environment map."""
     from voldetail.apply import render as picture_of
     from voldetail.image import check_suffix, save_image
+    from voldetail.recover.files import load_any
     from voldetail.render.environment import checked_environment
     from voldetail.setup.light import parse_light
 
     check_suffix(out)
     check_file(out)
-    record = load_detail(detail)
+    record = load_any(detail)
     if light is not None and envmap is not None:
         raise InputError("--light and --envmap were both given; choose one.")
     if shading not in ("phong", "principled"):

@@ -9,15 +9,22 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from voldetail.cli.console import MANNER, output
-from voldetail.detail import Detail, describe_in_words, detail_to_text, load_detail, summary
+from voldetail.cli.console import MANNER, output, result
+from voldetail.cli.shape_options import DETAIL_HELP
+from voldetail.detail import Detail, describe_in_words, detail_to_text, summary
+from voldetail.detail.photo_relief import MappedDetail
 
 
 def show(
-    detail: Annotated[Path, typer.Argument(help="A detail file, as fit makes it.")],
+    detail: Annotated[Path, typer.Argument(help=DETAIL_HELP)],
 ) -> None:
-    """Show the parameters of a detail in words and units."""
-    record = load_detail(detail)
+    """Show the parameters of a detail in words and units, or what is known of a photo's relief."""
+    from voldetail.recover.files import load_any
+
+    record = load_any(detail)
+    if isinstance(record, MappedDetail):
+        _show_relief(record)
+        return
     if MANNER.as_json:
         print(detail_to_text(record), end="")
         return
@@ -34,6 +41,19 @@ def show(
     console.print(table)
     for line in _origin(record):
         console.print(Text(line), soft_wrap=not console.is_terminal)
+
+
+def _show_relief(relief: MappedDetail) -> None:
+    record, r = relief.record, relief.reflectance
+    kind = "a tile" if record.periodic else "the photo as it is"
+    result(
+        record.model_dump(mode="json"),
+        record.name,
+        f"The photo's own relief, {kind}: {record.columns} x {record.rows} pixels, {record.texels_per_unit:.4g} a scene unit.",
+        f"Amplitude {record.relief.amplitude:.3g} scene units, light {record.light}, confidence {record.confidence:.2f}.",
+        f"Ka {r.ambient:.3g}, Kd {r.diffuse:.3g}, Ks {r.specular:.3g}, N {r.shininess:.3g}.",
+        *record.notes,
+    )
 
 
 def _origin(record: Detail) -> list[str]:

@@ -1,0 +1,1 @@
+"""The photo's own relief: height, normals, albedo and gloss of every pixel."""
