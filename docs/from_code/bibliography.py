@@ -47,6 +47,7 @@ PAPERS: dict[str, Paper] = {
         "section 6": "channels without correlation (report)",
         "section 7": "analysis and synthesis as a whole (report)",
         "section 8": "results, among them morphs (report)",
+        "section 5.1": "several channels (article)",
         "section 5.2": "the inverse histogram in few samples (article)",
         "section 5.3": "synthesis by analysis (article)",
         "eq. 12": "the weight of a band from the spectrum's energy (article)",
