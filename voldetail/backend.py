@@ -98,8 +98,7 @@ def find_llvm() -> Path:
             )
         if version < MINIMUM_LLVM:
             raise BackendError(
-                f"DRJIT_LIBLLVM_PATH={own} is LLVM {version}, which can abort Mitsuba: give {MINIMUM_LLVM} or newer,"
-                " or unset it"
+                f"DRJIT_LIBLLVM_PATH={own} is LLVM {version}, which can abort Mitsuba: give {MINIMUM_LLVM} or newer, or unset it"
             )
         return Path(own)
     # Newest by its file name first, so that usually one library is asked.

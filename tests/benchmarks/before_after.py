@@ -53,15 +53,14 @@ def run(photograph: Photograph, folder: Path, evaluations: int | None) -> tuple[
     """Fit one photograph as before, and compare; returns the record and photo, before and after."""
     after = load_detail(folder / photograph.name / "detail.json")
     assert after.provenance is not None
-    setup = setup_of(
-        photograph, solver="paper", metric="published", evaluations=evaluations or after.provenance.evaluations
-    )
+    setup = setup_of(photograph, solver="paper", metric="published", evaluations=evaluations or after.provenance.evaluations)
     result = fit(setup)
     save_detail(folder / photograph.name / "before.json", result.detail)
     target = make_target(setup)
     pictures = {"before": picture_of(result.detail, setup, target), "after": picture_of(after, setup, target)}
     record = {
-        "name": photograph.name, "evaluations": result.evaluations,
+        "name": photograph.name,
+        "evaluations": result.evaluations,
         "seconds": {"before": round(result.seconds, 1), "after": after.provenance.seconds},
         "distances": {name: distances(picture, target) for name, picture in pictures.items()},
     }

@@ -56,8 +56,12 @@ def run(photograph: Photograph, output: Path | None) -> tuple[dict[str, Any], li
     marks = [np.ascontiguousarray(target.mask[:, part]) for part in (slice(None, half), slice(-half, None))]
     halves = ColourDistance(left, marks[0], setup.fit.metric)(right, marks[1])
     record = {
-        "photo": photograph.name, "credit": photograph.credit, "chosen": chosen.chosen, "seconds": round(seconds, 2),
-        "halves": round(halves, 3), "distances": {k: round(v, 3) for k, v in chosen.distances.items()},
+        "photo": photograph.name,
+        "credit": photograph.credit,
+        "chosen": chosen.chosen,
+        "seconds": round(seconds, 2),
+        "halves": round(halves, 3),
+        "distances": {k: round(v, 3) for k, v in chosen.distances.items()},
     }
     return record, row
 

@@ -75,8 +75,7 @@ class Metric:
 
     def distance(self, other: Picture) -> float:
         found = [
-            distance(seen, describe(plane, like=seen))
-            for seen, plane in zip(self._seen, self._components.of(other), strict=True)
+            distance(seen, describe(plane, like=seen)) for seen, plane in zip(self._seen, self._components.of(other), strict=True)
         ]
         return float(np.dot(found, self._components.weights))
 

@@ -118,8 +118,10 @@ def mosaic(folder: str) -> list[Shot]:
 
     return [
         Shot(
-            f"{at['tile']} {at['nominal']}", _near((*at["xy_fit_tile_units"], FLASH_HEIGHT), 1.0),
-            (lambda k: lambda: tile(k))(at["tile"]), at_camera=True,
+            f"{at['tile']} {at['nominal']}",
+            _near((*at["xy_fit_tile_units"], FLASH_HEIGHT), 1.0),
+            (lambda k: lambda: tile(k))(at["tile"]),
+            at_camera=True,
         )
         for at in _lights(folder)["lights"]
     ]
@@ -179,8 +181,10 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
     def setup_of(light: Light, zone: Zone | None) -> Setup:
         return setup_from(
             {
-                "photo": {"path": f"{capture.name}.png", "zone": zone}, "light": light,
-                "mask": mask_of(capture.name), "fit": {"evaluations": evaluations, "library": "none"},
+                "photo": {"path": f"{capture.name}.png", "zone": zone},
+                "light": light,
+                "mask": mask_of(capture.name),
+                "fit": {"evaluations": evaluations, "library": "none"},
             },
             capture.name,
         )
@@ -220,9 +224,11 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
             ratios[method] = {**yardstick.ratios(grey), "side": round(away, 3)}
         lights.append(
             {
-                "light": shot.name, "held_out": shot.name != first.name,
+                "light": shot.name,
+                "held_out": shot.name != first.name,
                 "turned": round(_turned(target.lamp, lamp, float(x.mean()), float(y.mean())), 1),
-                "halves": {metric: round(value, 4) for metric, value in yardstick.halves.items()}, "ratios": ratios,
+                "halves": {metric: round(value, 4) for metric, value in yardstick.halves.items()},
+                "ratios": ratios,
             }
         )
         rows.append([seen.pixels, *(_toned(picture, seen) for picture in pictures.values())])
@@ -230,8 +236,14 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
         held = sorted((i for i, light in enumerate(lights) if light["held_out"]), key=lambda i: -lights[i]["turned"])
         save_sheet(sheets / f"heldout_light_{capture.name}.jpg", [rows[i] for i in held[:SHOWN_LIGHTS]])
     return {
-        "capture": capture.name, "about": capture.about, "credit": capture.credit, "zone": list(target.zone),
-        "trained": first.name, "evaluations": result.evaluations, "seconds": round(result.seconds, 1), "lights": lights,
+        "capture": capture.name,
+        "about": capture.about,
+        "credit": capture.credit,
+        "zone": list(target.zone),
+        "trained": first.name,
+        "evaluations": result.evaluations,
+        "seconds": round(result.seconds, 1),
+        "lights": lights,
         "fit_nearest": share(light for light in lights if light["held_out"]),
     }
 
@@ -283,8 +295,7 @@ def table(records: list[dict[str, Any]]) -> str:
     header = ["capture", "metric", "fit", "photo, flat", "brightness as height", "fit nearest"]
     return (
         "Distance from the photo under lights not fitted, over the distance between that photo's halves: medians. Side: how far"
-        " apart photo and picture look lit from, 0 to about 2.\n\n"
-        + markdown(header, rows)
+        " apart photo and picture look lit from, 0 to about 2.\n\n" + markdown(header, rows)
     )
 
 

@@ -137,7 +137,8 @@ def run(scan: Scan, evaluations: int | None, sheets: Path | None) -> dict[str, A
     """Fit one scan's photo and compare; returns the record."""
     setup = setup_from(
         {
-            "photo": {"path": "rendered.png", "resolution": SIDE, "zone": [0, 0, SIDE, SIDE]}, "light": LIGHT,
+            "photo": {"path": "rendered.png", "resolution": SIDE, "zone": [0, 0, SIDE, SIDE]},
+            "light": LIGHT,
             "fit": {"evaluations": evaluations, "library": "none"},
         },
         scan.name,
@@ -183,8 +184,12 @@ def run(scan: Scan, evaluations: int | None, sheets: Path | None) -> dict[str, A
     assert result.heights is not None
     return {
         "heights": height_record(result.heights, result.detail.relief.amplitude, needed),
-        "scan": scan.name, "credit": scan.credit, "light": LIGHT, "evaluations": result.evaluations,
-        "seconds": round(result.seconds, 1), "true_std": round(float(true_heights.std()), 5),
+        "scan": scan.name,
+        "credit": scan.credit,
+        "light": LIGHT,
+        "evaluations": result.evaluations,
+        "seconds": round(result.seconds, 1),
+        "true_std": round(float(true_heights.std()), 5),
         "true_slope": round(float(np.sqrt(np.mean(slopes(true_heights, truth.step) ** 2))), 3),
         "relief": {name: compare(heights_of(seen), true_heights, truth.step) for name, (seen, _) in candidates.items()},
         "lights": lights,
@@ -198,10 +203,15 @@ def table(records: list[dict[str, Any]]) -> str:
         for name, numbers in record["relief"].items():
             ratios = [light["ratios"][name] for light in record["lights"]]
             relief = (numbers[key] for key in ("heights", "slopes", "spectrum", "amplitude_ratio"))
-            rows.append([
-                record["scan"], name.replace("_", " "), *relief,
-                f"{float(np.median(ratios[:-1])):.2f}", f"{ratios[-1]:.2f}",
-            ])
+            rows.append(
+                [
+                    record["scan"],
+                    name.replace("_", " "),
+                    *relief,
+                    f"{float(np.median(ratios[:-1])):.2f}",
+                    f"{ratios[-1]:.2f}",
+                ]
+            )
     return (
         "Heights, slopes: 1-Wasserstein distance in standard deviations of the true ones. Spectrum: root mean square of the"
         " decades between bands. Other lights (median of 8), grazing: distance over that between the true halves.\n\n"

@@ -32,14 +32,25 @@ MOSAIC_HEIGHT = 2.35  # tile widths, the middle of the range in lights.json
 ROCK = (slice(100, 250), slice(140, 370))  # the nearly plane patch of uw_psm_rock, from its record
 
 CAPTURES = (
-    "uw_psm_rock", "harvard_turtle", "nmo_pebble_wall_4light", "mgan_cards_blue", "mgan_leather-darkbrown",
-    "mgan_wall-plaster-green", "dea_squeeze_1",
+    "uw_psm_rock",
+    "harvard_turtle",
+    "nmo_pebble_wall_4light",
+    "mgan_cards_blue",
+    "mgan_leather-darkbrown",
+    "mgan_wall-plaster-green",
+    "dea_squeeze_1",
 )
 MOON = ("skimage_moon", 195.0)
 
 CONTROLS = (
-    "flash_test_2009", "flash_test_2014", "flash_test_2020", "flash_test_2029", "flash_test_2061", "flash_train_0253",
-    "flash_train_2041", "flash_train_2062",
+    "flash_test_2009",
+    "flash_test_2014",
+    "flash_test_2020",
+    "flash_test_2029",
+    "flash_test_2061",
+    "flash_train_0253",
+    "flash_train_2041",
+    "flash_train_2062",
 )
 """Photos with the flash at the camera: there is no azimuth to find."""
 
@@ -71,9 +82,16 @@ def case(
         cosine = np.dot(direction_of(azimuth, elevation), direction_of(guess.azimuth, guess.elevation))
         angle = round(math.degrees(math.acos(min(1.0, float(cosine)))), 1)
     return Case(
-        name, light, None if azimuth is None else round(azimuth, 1), None if elevation is None else round(elevation, 1),
-        (guess.azimuth, guess.elevation), guess.confidence, guess.sign_confidence,
-        None if off is None or axis else round(off, 1), None if off is None else round(min(off, 180 - off), 1), angle,
+        name,
+        light,
+        None if azimuth is None else round(azimuth, 1),
+        None if elevation is None else round(elevation, 1),
+        (guess.azimuth, guess.elevation),
+        guess.confidence,
+        guess.sign_confidence,
+        None if off is None or axis else round(off, 1),
+        None if off is None else round(min(off, 180 - off), 1),
+        angle,
     )
 
 
@@ -127,12 +145,15 @@ def summary(cases: list[Case]) -> dict[str, Any]:
 
     axes = [c.axis_error for c in cases if c.axis_error is not None]
     return {
-        "lights": len(cases), "axis_median": round(float(np.median(axes)), 1) if axes else None,
+        "lights": len(cases),
+        "axis_median": round(float(np.median(axes)), 1) if axes else None,
         "azimuth_median": round(float(np.median([c.azimuth_error for c in known])), 1) if known else None,
         "angle_median": round(float(np.median(angles)), 1) if angles else None,
-        "within_30": share(known, NEAR), "right_end": share(known, 90.0),
+        "within_30": share(known, NEAR),
+        "right_end": share(known, 90.0),
         "median_confidence": round(float(np.median([c.confidence for c in cases])), 2),
-        "confident": sum(c.confidence >= FAIRLY_SURE for c in cases), "confident_within_30": share(sure, NEAR),
+        "confident": sum(c.confidence >= FAIRLY_SURE for c in cases),
+        "confident_within_30": share(sure, NEAR),
         "refused": sum(c.confidence < FLOOR for c in cases),
     }
 
@@ -140,13 +161,25 @@ def summary(cases: list[Case]) -> dict[str, Any]:
 def table(groups: dict[str, list[Case]]) -> str:
     """The results as Markdown."""
     heads = (
-        "lights", "axis_median", "azimuth_median", "angle_median", "within_30", "right_end", "median_confidence",
-        "confident", "confident_within_30", "refused",
+        "lights",
+        "axis_median",
+        "azimuth_median",
+        "angle_median",
+        "within_30",
+        "right_end",
+        "median_confidence",
+        "confident",
+        "confident_within_30",
+        "refused",
     )
     lines = [
-        "# Guessed lights", "", "Made by `python -m tests.benchmarks.light_guess -o results/light`. Errors in degrees (medians);"
-        f" confident: {FAIRLY_SURE:g} or more; refused: below {FLOOR:g}, where `--light auto` stops.", "",
-        "| set | " + " | ".join(h.replace("_", " ") for h in heads) + " |", "|---|" + "---|" * len(heads),
+        "# Guessed lights",
+        "",
+        "Made by `python -m tests.benchmarks.light_guess -o results/light`. Errors in degrees (medians);"
+        f" confident: {FAIRLY_SURE:g} or more; refused: below {FLOOR:g}, where `--light auto` stops.",
+        "",
+        "| set | " + " | ".join(h.replace("_", " ") for h in heads) + " |",
+        "|---|" + "---|" * len(heads),
     ]
     for name, cases in groups.items():
         found = summary(cases)

@@ -41,9 +41,7 @@ def nearest(photos: dict[str, pictures.Picture], metrics: tuple[str, ...]) -> di
         picture = layers(pictures.crop(photos[name], corner))
         for metric, references in asking.items():
             found[metric][:, column] = distances(references, picture)
-    return {
-        metric: retrieval(values, list(first), [name for name, _ in gallery]) for metric, values in found.items()
-    }
+    return {metric: retrieval(values, list(first), [name for name, _ in gallery]) for metric, values in found.items()}
 
 
 def retrieval(distances: np.ndarray, asking: list[str], gallery: list[str]) -> dict[str, float]:
@@ -111,9 +109,7 @@ def paper_check(photos: dict[str, pictures.Picture]) -> dict[str, Any]:
         rows = {}
         for other in ("gravel", "grass", "brick"):
             parts = distance_by_level(asking, describe(pictures.crop(photos[other], (320, 320)), like=asking))
-            rows[f"crop of {other}"] = {
-                level: round(value, 4) for level, value in (parts | {"M": sum(parts.values())}).items()
-            }
+            rows[f"crop of {other}"] = {level: round(value, 4) for level, value in (parts | {"M": sum(parts.values())}).items()}
         found[f"reference: crop of {name}"] = rows
     return found
 

@@ -156,9 +156,7 @@ def _pairs(owners: list[str], samples: dict[str, Sample]) -> Iterator[tuple[Arra
             yield near, np.array(list(sample.decoys.values())), 1 / len(near)
 
 
-def scores(
-    owners: list[str], samples: dict[str, Sample], weights: dict[str, Array], power: float = 1.0
-) -> dict[str, Any]:
+def scores(owners: list[str], samples: dict[str, Sample], weights: dict[str, Array], power: float = 1.0) -> dict[str, Any]:
     """The table's scores of distances by each photo's ``weights``, as power means."""
 
     def mean(parts: Array, name: str) -> Array:

@@ -46,23 +46,52 @@ PHOTOGRAPHS = (
     Photograph("gravel", "skimage:gravel", "70,50", "azimuth measured, elevation guessed", True, "CC0, scikit-image"),
     Photograph("grass", "skimage:grass", "140,55", "guessed", True, "CC0, linolafett, scikit-image"),
     Photograph("brick", "skimage:brick", "90,60", "guessed; structured: a control", True, "CC0, scikit-image"),
-    Photograph("rock_plants", "photos/duion_rock_rough_plants_01/photo.jpg", "90,45", "daylight from above", True,
-               "CC-BY 3.0, Christian Femmer aka Duion"),
-    Photograph("rock_weathered", "photos/duion_rock_rough_weathered_01/photo.jpg", "90,45", "daylight from above", True,
-               "CC-BY 3.0, Christian Femmer aka Duion"),
-    Photograph("stone_slab", "photos/nmo_stone_slab/photo.jpg", "90,60", "overcast, guessed", True,
-               "MIT, Christian Petry"),
-    Photograph("pebble_wall", "multilight/nmo_pebble_wall_4light/left.jpg", "180,40",
-               "azimuth known, elevation about 30 to 50 degrees", True, "MIT, Christian Petry"),
+    Photograph(
+        "rock_plants",
+        "photos/duion_rock_rough_plants_01/photo.jpg",
+        "90,45",
+        "daylight from above",
+        True,
+        "CC-BY 3.0, Christian Femmer aka Duion",
+    ),
+    Photograph(
+        "rock_weathered",
+        "photos/duion_rock_rough_weathered_01/photo.jpg",
+        "90,45",
+        "daylight from above",
+        True,
+        "CC-BY 3.0, Christian Femmer aka Duion",
+    ),
+    Photograph("stone_slab", "photos/nmo_stone_slab/photo.jpg", "90,60", "overcast, guessed", True, "MIT, Christian Petry"),
+    Photograph(
+        "pebble_wall",
+        "multilight/nmo_pebble_wall_4light/left.jpg",
+        "180,40",
+        "azimuth known, elevation about 30 to 50 degrees",
+        True,
+        "MIT, Christian Petry",
+    ),
     Photograph("roughcast", "photos/flash_train_2062/flash.jpg", "flash", "flash at the camera", False),
     Photograph("pitted_rock", "photos/flash_test_2020/flash.jpg", "flash", "flash at the camera", False),
     Photograph("sandy_lichen", "photos/flash_train_2041/flash.jpg", "flash", "flash at the camera", False),
     Photograph("sand_ripples", "photos/ns_sand_ripples/photo.jpg", "90,30", "one light, direction guessed", False),
     Photograph("bark", "photos/ns_bark/photo.jpg", "180,40", "side light, direction guessed", False),
-    Photograph("plaster", "multilight/mgan_wall-plaster-green/mosaic_3x3.jpg", "flash@0.1975,0.1545,0.785",
-               "flash at the camera, foot and height from lights.json", False, zone=(128, 128, 768, 768)),
-    Photograph("leather", "multilight/mgan_leather-darkbrown/mosaic_3x3.jpg", "flash@0.2215,0.1525,0.785",
-               "flash at the camera, foot and height from lights.json", False, zone=(64, 64, 384, 384)),
+    Photograph(
+        "plaster",
+        "multilight/mgan_wall-plaster-green/mosaic_3x3.jpg",
+        "flash@0.1975,0.1545,0.785",
+        "flash at the camera, foot and height from lights.json",
+        False,
+        zone=(128, 128, 768, 768),
+    ),
+    Photograph(
+        "leather",
+        "multilight/mgan_leather-darkbrown/mosaic_3x3.jpg",
+        "flash@0.2215,0.1525,0.785",
+        "flash at the camera, foot and height from lights.json",
+        False,
+        zone=(64, 64, 384, 384),
+    ),
 )
 
 
@@ -73,8 +102,8 @@ def setup_of(photograph: Photograph, **fit_settings: Any) -> Setup:
     """Return the Setup of one photograph, with settings of the fit that are not the default's; without a library."""
     path = photograph.path if photograph.path.startswith("skimage:") else str(SHARED / photograph.path)
     return setup_from(
-        {"photo": {"path": path, "zone": photograph.zone}, "light": photograph.light,
-         "fit": {"library": "none"} | fit_settings}, photograph.name
+        {"photo": {"path": path, "zone": photograph.zone}, "light": photograph.light, "fit": {"library": "none"} | fit_settings},
+        photograph.name,
     )
 
 
@@ -103,9 +132,16 @@ def run(photograph: Photograph, output: Path, unshown: Path | None) -> dict[str,
             keep_linear(place / "fit.jpg", np.concatenate([pictures.photo, pictures.fitted, sphere], axis=1))
     floor = result.detail.noise_floor
     return {
-        "name": photograph.name, "light": photograph.light, "light_is": photograph.about, "credit": photograph.credit,
-        "M": round(result.distance, 3), "photo_halves": floor.photo_halves, "other_seed": floor.other_seed,
-        "seconds": round(result.seconds, 1), "evaluations": result.evaluations, "zone": list(result.target.zone),
+        "name": photograph.name,
+        "light": photograph.light,
+        "light_is": photograph.about,
+        "credit": photograph.credit,
+        "M": round(result.distance, 3),
+        "photo_halves": floor.photo_halves,
+        "other_seed": floor.other_seed,
+        "seconds": round(result.seconds, 1),
+        "evaluations": result.evaluations,
+        "zone": list(result.target.zone),
     }
 
 

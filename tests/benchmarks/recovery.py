@@ -66,7 +66,8 @@ def photo_of(detail: Detail, light: str, seed: int | None = None) -> NDArray[np.
 def _setup(light: str, solver: str, metric: str, evaluations: int | None) -> Any:
     return setup_from(
         {
-            "photo": {"path": "rendered.png", "resolution": SIDE, "zone": [0, 0, SIDE, SIDE]}, "light": light,
+            "photo": {"path": "rendered.png", "resolution": SIDE, "zone": [0, 0, SIDE, SIDE]},
+            "light": light,
             "fit": {"solver": solver, "metric": metric, "evaluations": evaluations, "library": "none"},
         },
         "recovery",
@@ -90,10 +91,17 @@ def run_case(name: str, solver: str, metric: str, evaluations: int | None) -> tu
 
     fitted, floor = mean_distance(found), mean_distance(truth)
     record = {
-        "case": name, "solver": solver, "metric": metric, "light": light, "ratio": round(fitted / floor, 3),
-        "M_fit": round(fitted, 4), "M_other_seed": round(floor, 4), "seconds": round(result.seconds, 1),
+        "case": name,
+        "solver": solver,
+        "metric": metric,
+        "light": light,
+        "ratio": round(fitted / floor, 3),
+        "M_fit": round(fitted, 4),
+        "M_other_seed": round(floor, 4),
+        "seconds": round(result.seconds, 1),
         "evaluations": result.evaluations,
-        "true": _numbers(truth), "found": _numbers(found),
+        "true": _numbers(truth),
+        "found": _numbers(found),
     }
     if result.heights is not None:
         record["heights"] = height_record(
@@ -115,9 +123,13 @@ def _numbers(detail: Detail) -> dict[str, Any]:
     # f along one axis and 1/f across it are the same stretch, turned by a quarter; the larger is reported.
     stretch = max(noise.anisotropy, 1 / noise.anisotropy)
     return {
-        "ranks": [noise.first_neighbour, noise.last_neighbour], "octaves": noise.octaves, "envelope": noise.envelope,
-        "scale": round(noise.scale * math.sqrt(noise.anisotropy), 2), "amplitude": round(detail.relief.amplitude, 4),
-        "anisotropy": round(stretch, 3), "stripes": round(noise.stripe_frequency, 2),
+        "ranks": [noise.first_neighbour, noise.last_neighbour],
+        "octaves": noise.octaves,
+        "envelope": noise.envelope,
+        "scale": round(noise.scale * math.sqrt(noise.anisotropy), 2),
+        "amplitude": round(detail.relief.amplitude, 4),
+        "anisotropy": round(stretch, 3),
+        "stripes": round(noise.stripe_frequency, 2),
     }
 
 
@@ -141,7 +153,8 @@ def main() -> None:
                 rows.append(pair)
     summary = {
         solver: {
-            "median_ratio": round(float(np.median(ratios)), 3), "worst_ratio": round(max(ratios), 3),
+            "median_ratio": round(float(np.median(ratios)), 3),
+            "worst_ratio": round(max(ratios), 3),
             "median_seconds": round(float(np.median([r["seconds"] for r in records if r["solver"] == solver])), 1),
         }
         for solver in {r["solver"] for r in records}

@@ -37,7 +37,6 @@ SIDE_BLUR = 1.0
 """Pixels of blur for `side`: on the pebble wall's four photos one pixel tells the sides apart best, of 1, 2 and 4."""
 
 
-
 class Yardstick:
     """Distances from one picture, in units of the distance between its own left and right half."""
 
@@ -52,8 +51,7 @@ class Yardstick:
     def ratios(self, luminance: Picture) -> dict[str, float]:
         """Return the distance of another picture by each metric, in units of the halves' own."""
         return {
-            metric: round(one.distance(luminance, self.mask) / self.halves[metric], 3)
-            for metric, one in self._references.items()
+            metric: round(one.distance(luminance, self.mask) / self.halves[metric], 3) for metric, one in self._references.items()
         }
 
 
@@ -99,9 +97,13 @@ def height_record(found: AmplitudeInterval, fitted: float, needed: float) -> dic
     rise = float(np.interp(np.log(needed), np.log(factors), distances) / min(*found.distances, *distances))
     ends = {key: round(value / fitted, 3) for key, value in found.ends.items()}
     return {
-        "needed": round(needed, 3), "needed_rise": round(rise, 3), **ends,
-        "inside": ends["low"] <= needed <= ends["high"], "inside_any": ends["low_any"] <= needed <= ends["high_any"],
-        "factors": [round(float(f), 3) for f in factors], "distances": [round(d, 3) for d in found.distances],
+        "needed": round(needed, 3),
+        "needed_rise": round(rise, 3),
+        **ends,
+        "inside": ends["low"] <= needed <= ends["high"],
+        "inside_any": ends["low_any"] <= needed <= ends["high_any"],
+        "factors": [round(float(f), 3) for f in factors],
+        "distances": [round(d, 3) for d in found.distances],
         "distances_any": [round(d, 3) for d in found.distances_any],
     }
 

@@ -53,7 +53,9 @@ def ways_of(objective: Objective, detail: Detail, seed: int) -> dict[str, tuple[
     judges, shading = ([derived_seed(seed, f"{name}/{i}") for i in range(COLOUR_SEEDS)] for name in ("colour", "shading"))
     found = {"one tint": (detail, "none")}
     for way, colour, shadings in (
-        ("by example", "by-example", shading), ("undivided", "by-example", []), ("auto", "auto", shading),
+        ("by example", "by-example", shading),
+        ("undivided", "by-example", []),
+        ("auto", "auto", shading),
     ):
         choice = choose_colour(objective, detail, colour, judges, shadings)
         found[way] = choice.detail, choice.chosen
@@ -68,8 +70,11 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
     def setup_of(light: Light, zone: Zone | None) -> Setup:
         return setup_from(
             {
-                "photo": {"path": f"{capture.name}.png", "zone": zone}, "light": light, "colour": "none",
-                "mask": mask_of(capture.name), "fit": {"evaluations": evaluations, "library": "none"},
+                "photo": {"path": f"{capture.name}.png", "zone": zone},
+                "light": light,
+                "colour": "none",
+                "mask": mask_of(capture.name),
+                "fit": {"evaluations": evaluations, "library": "none"},
             },
             capture.name,
         )
@@ -96,7 +101,10 @@ def run(capture: Capture, evaluations: int | None, sheets: Path | None) -> dict[
     if sheets is not None:
         save_sheet(sheets / f"relit_{capture.name}.jpg", list(rows.values())[:3])
     return {
-        "capture": capture.name, "credit": capture.credit, "trained": first.name, "chosen": {w: c for w, (_, c) in ways.items()},
+        "capture": capture.name,
+        "credit": capture.credit,
+        "trained": first.name,
+        "chosen": {w: c for w, (_, c) in ways.items()},
         "medians": {
             way: {m: round(float(np.median([light[way][m] for light in lights.values()])), 4) for m in MEASURES} for way in WAYS
         },

@@ -37,7 +37,7 @@ SHOWN = 3
 def answers(groups: Groups, asked: Query) -> list[Answer]:
     """Each model's best entry, nearest first."""
     found = rank(groups, asked.vector, 1, tones=(asked.tones.dark, asked.tones.bright))
-    return sorted((best for best, in found.by_model.values()), key=lambda answer: answer.distance)
+    return sorted((best for (best,) in found.by_model.values()), key=lambda answer: answer.distance)
 
 
 def judged(asked: Query, found: list[Answer]) -> list[float]:

@@ -45,7 +45,8 @@ def main() -> None:
         one, other = luminance(phong), luminance(principled)
         inside = (one > 0) | (other > 0)
         record[name] = {
-            "mean_phong": round(float(one[inside].mean()), 4), "mean_principled": round(float(other[inside].mean()), 4),
+            "mean_phong": round(float(one[inside].mean()), 4),
+            "mean_principled": round(float(other[inside].mean()), 4),
             "mean_difference": round(float(np.abs(one - other)[inside].mean()), 4),
         }
     keep_linear(arguments.output / "phong_principled.jpg", np.concatenate(rows))

@@ -40,8 +40,12 @@ REPEATS = 24
 
 def setup_for(resolution: int = 192, **fit_settings: Any) -> Any:
     return setup_from(
-        {"photo": {"path": "skimage:gravel", "zone": [100, 100, 256, 256], "resolution": resolution}, "light": "70,50",
-         "fit": fit_settings}, "speed",
+        {
+            "photo": {"path": "skimage:gravel", "zone": [100, 100, 256, 256], "resolution": resolution},
+            "light": "70,50",
+            "fit": fit_settings,
+        },
+        "speed",
     )
 
 
@@ -85,7 +89,8 @@ def evaluations() -> dict[str, Any]:
         dr.sync_thread()
 
     return {
-        "evaluations_a_second": round(1.0 / float(np.median(times)), 1), "kernels_compiled_in_second_pass": compiled,
+        "evaluations_a_second": round(1.0 / float(np.median(times)), 1),
+        "kernels_compiled_in_second_pass": compiled,
         "parts_ms": {
             "noise of two octaves, normals, sky": milliseconds(noise),
             "shading with shadows, pooling": milliseconds(lambda: components(surface, target.lamp)),
@@ -139,8 +144,12 @@ def solvers(evaluations_each: int) -> dict[str, Any]:
             reached[where].append((progress.seconds, progress.best))
 
         result = fit(setup_for(solver=name, metric="published", evaluations=evaluations_each), on_progress=note)
-        found[name] = {"M": round(result.distance, 4), "best": round(min(b for _, b in reached[name]), 4),
-                       "seconds": round(result.seconds, 1), "evaluations": result.evaluations}
+        found[name] = {
+            "M": round(result.distance, 4),
+            "best": round(min(b for _, b in reached[name]), 4),
+            "seconds": round(result.seconds, 1),
+            "evaluations": result.evaluations,
+        }
     goal = found["paper"]["best"]
     when = {name: next((s for s, best in steps if best <= goal), None) for name, steps in reached.items()}
     found["seconds_to_reach_paper_best"] = when

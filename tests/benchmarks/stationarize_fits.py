@@ -81,7 +81,11 @@ def run(name: str, light: str, evaluations: int | None) -> tuple[dict[str, Any],
         far[way], seconds[way] = round(float(np.median(values)) / halves, 3), round(result.seconds, 1)
         row += ([result.target.pixels] if even else []) + [result.coloured]
     record = {
-        "photo": name, "unevenness": round(plain.unevenness or 0.0, 3), "distance": far, "seconds": seconds, "part": [y, x, half],
+        "photo": name,
+        "unevenness": round(plain.unevenness or 0.0, 3),
+        "distance": far,
+        "seconds": seconds,
+        "part": [y, x, half],
     }
     return record, row
 

@@ -122,9 +122,7 @@ def random_phase(encoded: NDArray[np.float64], rng: np.random.Generator) -> NDAr
     jumps[-1] += encoded[0] - encoded[-1]
     jumps[:, 0] += encoded[:, -1] - encoded[:, 0]
     jumps[:, -1] += encoded[:, 0] - encoded[:, -1]
-    laplace = (
-        2 * np.cos(2 * np.pi * np.fft.fftfreq(height))[:, None] + 2 * np.cos(2 * np.pi * np.fft.fftfreq(width)) - 4
-    )
+    laplace = 2 * np.cos(2 * np.pi * np.fft.fftfreq(height))[:, None] + 2 * np.cos(2 * np.pi * np.fft.fftfreq(width)) - 4
     laplace[0, 0] = 1
     smooth = np.fft.fft2(jumps) / laplace
     smooth[0, 0] = 0

@@ -53,8 +53,13 @@ def truth_of(name: str, look: Look) -> tuple[Detail, Setup]:
     kind = Kind(first, last, str(draw.choice(["gaussian", "exponential"])), int(draw.integers(1, 4)), bool(draw.random() < 0.25))
     medium = look == "medium"
     space = Space(
-        domain="solid", scale=(3.0, 8.0) if medium else (5.0, 16.0), finest=1.0 / (1.6 * 2 * (4 if medium else 2) / SIDE),
-        roughness=(0.5, 1.8) if medium else (0.15, 1.0), anisotropy=(0.5, 2.0), mode="volume", medium=medium,
+        domain="solid",
+        scale=(3.0, 8.0) if medium else (5.0, 16.0),
+        finest=1.0 / (1.6 * 2 * (4 if medium else 2) / SIDE),
+        roughness=(0.5, 1.8) if medium else (0.15, 1.0),
+        anisotropy=(0.5, 2.0),
+        mode="volume",
+        medium=medium,
         highest=0.8 * DEEPEST * 2.0,
     )
     assert not medium or (MEDIUM_ROUGHNESS[0] <= space.roughness[0] and space.roughness[1] <= MEDIUM_ROUGHNESS[1])
@@ -62,16 +67,21 @@ def truth_of(name: str, look: Look) -> tuple[Detail, Setup]:
     vector = 0.15 + 0.7 * draw.random(len(space.names(kind)))
     detail = space.decode(kind, vector)
     reflectance = Reflectance(
-        ambient=float(draw.uniform(0.05, 0.3)), diffuse=float(draw.uniform(0.3, 0.6) * (1.5 if medium else 1.0)),
-        specular=0.0, shininess=16.0,
+        ambient=float(draw.uniform(0.05, 0.3)),
+        diffuse=float(draw.uniform(0.3, 0.6) * (1.5 if medium else 1.0)),
+        specular=0.0,
+        shininess=16.0,
     )
     light = f"{draw.uniform(0, 360):.0f},{draw.uniform(30, 60):.0f}"
     round_one = CASES[look].index(name) % 2 == 1
     proxy = {"kind": "ellipsoid", "size": ELLIPSOID} if round_one else {"kind": "plane"}
     setup = setup_from(
         {
-            "photo": {"path": "rendered.png", "resolution": SIDE, "zone": [0, 0, SIDE, SIDE]}, "light": light, "proxy": proxy,
-            "mode": "volume", "look": look,
+            "photo": {"path": "rendered.png", "resolution": SIDE, "zone": [0, 0, SIDE, SIDE]},
+            "light": light,
+            "proxy": proxy,
+            "mode": "volume",
+            "look": look,
         },
         "recovery",
     )
@@ -163,7 +173,8 @@ def main() -> None:
             seconds.append(record["seconds"])
         if rows:
             summary[look] = {
-                "median_ratio": round(float(np.median(ratios)), 3), "worst_ratio": max(ratios),
+                "median_ratio": round(float(np.median(ratios)), 3),
+                "worst_ratio": max(ratios),
                 "median_seconds": round(float(np.median(seconds)), 1),
             }
             grid = [np.concatenate(rows[i : i + 2], axis=1) for i in range(0, len(rows) - len(rows) % 2, 2)] or rows

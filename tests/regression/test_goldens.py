@@ -29,13 +29,23 @@ CASES = {
     "striped": {"noise.stripe_frequency": 1.5, "noise.stripe_spread": 2.0, "noise.anisotropy": 0.5, "noise.angle": 0.7},
     "grains": {"noise.weights": (1.0, -1.0, 1.0), "noise.envelope": "gaussian", "reflectance.cell_albedo": 0.4},
     "plates": {
-        "noise.weights": (1.0, -1.0, 1.0), "noise.cell_height": 1.5, "noise.cell_tilt": 2.0, "noise.bevel": 0.15,
+        "noise.weights": (1.0, -1.0, 1.0),
+        "noise.cell_height": 1.5,
+        "noise.cell_tilt": 2.0,
+        "noise.bevel": 0.15,
         "reflectance.cell_albedo": 0.2,
     },
     "stones": {
-        "noise.joining": "highest", "noise.last_neighbour": 50, "noise.facets": 0.9, "noise.elongation": 2.0,
-        "noise.size_spread": 0.4, "noise.octaves": 2, "noise.gain": 0.3, "noise.lacunarity": 3.0,
-        "reflectance.cell_albedo": 0.3, "reflectance.speckle": 0.3,
+        "noise.joining": "highest",
+        "noise.last_neighbour": 50,
+        "noise.facets": 0.9,
+        "noise.elongation": 2.0,
+        "noise.size_spread": 0.4,
+        "noise.octaves": 2,
+        "noise.gain": 0.3,
+        "noise.lacunarity": 3.0,
+        "reflectance.cell_albedo": 0.3,
+        "reflectance.speckle": 0.3,
     },
 }
 

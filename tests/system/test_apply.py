@@ -93,8 +93,8 @@ def test_relighting_is_rendering_under_each_light() -> None:
 
 
 @pytest.mark.parametrize(
-    ("light", "tolerance"), [("135,45", 0.02), ("0,60", 0.02), ("flash", 0.02), ("point:1,0.5,3", 0.02),
-     ("spot:1,0.5,3@0,0,0.5,14", 0.02)],
+    ("light", "tolerance"),
+    [("135,45", 0.02), ("0,60", 0.02), ("flash", 0.02), ("point:1,0.5,3", 0.02), ("spot:1,0.5,3@0,0,0.5,14", 0.02)],
 )
 def test_the_path_tracer_sees_what_we_evaluate(light: str, tolerance: float) -> None:
     # On a convex matt shape there are no bounces: both must agree to the noise and the principled model's own shading.
@@ -111,9 +111,7 @@ def test_the_path_tracer_sees_what_we_evaluate(light: str, tolerance: float) -> 
 
 @pytest.mark.parametrize("shape", ["sphere", "plane"])
 def test_principled_is_near_phong_for_a_matt_detail(shape: str) -> None:
-    one, other = (
-        render(BUMPY, shape, size=SIZE, shading=how, samples=64)[..., 1].mean() for how in ("phong", "principled")
-    )
+    one, other = (render(BUMPY, shape, size=SIZE, shading=how, samples=64)[..., 1].mean() for how in ("phong", "principled"))
     assert other == pytest.approx(one, rel=0.1)  # light that bounces between bumps is in one of them only
 
 

@@ -56,7 +56,10 @@ def child(*words: str) -> Iterator[subprocess.Popen[str]]:
     """A process of its own that runs the command; killed at the end if it is still there."""
     code = CHILD.format(tests=str(Path(__file__).parent))
     process = subprocess.Popen(
-        [sys.executable, "-c", code, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        [sys.executable, "-c", code, *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
         # A parent in the background may have Ctrl-C ignored, and its children with it.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
@@ -138,9 +141,7 @@ def test_a_fit_from_photo_to_folder(tmp_path: Path, capsys: pytest.CaptureFixtur
         ["--resume"],
     ],
 )
-def test_bad_input_leaves_no_folder(
-    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_bad_input_leaves_no_folder(words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     assert main(["fit", "skimage:gravel", "--light", "70,50", "-o", str(out), *words]) == 2
     assert capsys.readouterr().err.count("\n") == 1
@@ -204,9 +205,7 @@ def detail(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize("name", ["out.png", "out.exr"])
 def test_render(name: str, detail: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / name
-    assert (
-        main(["render", str(detail), "sphere", "--size", "80x64", "--light", "135,45", "-o", str(out)]) == 0
-    )
+    assert main(["render", str(detail), "sphere", "--size", "80x64", "--light", "135,45", "-o", str(out)]) == 0
     assert "80 x 64" in capsys.readouterr().out
     pixels = load_photo(out).pixels
     assert pixels.shape == (64, 80, 3)
@@ -261,9 +260,7 @@ def test_a_light_that_is_estimated(tmp_path: Path, capsys: pytest.CaptureFixture
     assert light.direction is not None
     estimated = detail.provenance.settings["light_estimated"]
     assert isinstance(estimated, dict)
-    assert [float(v) for v in detail.provenance.light.split(",")] == pytest.approx(
-        [estimated["azimuth"], estimated["elevation"]]
-    )
+    assert [float(v) for v in detail.provenance.light.split(",")] == pytest.approx([estimated["azimuth"], estimated["elevation"]])
     # The same photo gives the same light, so the state still belongs to it.
     assert main([*words, "--evaluations", "8", "--resume"]) == 0
     assert load_setup(folder / "setup.toml").light == light

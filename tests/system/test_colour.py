@@ -169,7 +169,9 @@ def photo() -> Photo:
 
 def found(colour: str) -> FitResult:
     asked = Setup(
-        photo=PhotoSetup(path="stains.png", resolution=SIDE, zone=(0, 0, SIDE, SIDE)), light=LIGHT, colour=colour,  # type: ignore[arg-type]
+        photo=PhotoSetup(path="stains.png", resolution=SIDE, zone=(0, 0, SIDE, SIDE)),
+        light=LIGHT,
+        colour=colour,  # type: ignore[arg-type]
         fit=FitSettings(evaluations=40, metric="published"),
     )
     return fit(asked, photo=photo())

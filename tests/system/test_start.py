@@ -12,11 +12,11 @@ from voldetail.cli import main
 from voldetail.detail import Detail, load_detail
 from voldetail.errors import InputError
 from voldetail.fit import fit
-from voldetail.fit.fitter import takes_starts
 from voldetail.fit.session import State
 from voldetail.fit.state_file import load_state
 from voldetail.fit.target import load_photo_of, make_target
 from voldetail.fit.warmstart import ReliefSource, starts_from
+from voldetail.fit.warmstart.choose import takes_starts
 from voldetail.fit.warmstart.light import direction_at_zone
 from voldetail.fit.warmstart.nearest import nearest_reliefs
 from voldetail.fit.warmstart.reliefs import FINE, SPACE, library_relief

@@ -33,9 +33,7 @@ CLOUD = with_values(
         "reflectance.ambient": 0.3, "reflectance.diffuse": 0.8,
     },
 )  # fmt: skip
-STONE = with_values(
-    Detail(mode="volume", seed=9), {"noise.scale": 5.0, "noise.last_neighbour": 2, "relief.amplitude": 0.12}
-)
+STONE = with_values(Detail(mode="volume", seed=9), {"noise.scale": 5.0, "noise.last_neighbour": 2, "relief.amplitude": 0.12})
 
 
 def wanted(look: str, evaluations: int = 24, **fields: Any) -> Setup:

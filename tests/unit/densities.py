@@ -29,9 +29,7 @@ def slab(density: Callable[[Array], Array], cells: int = 16) -> DensityGrid:
     edge = 0.5 / cells
     half = 2.0
     across = round(2 * half / edge)
-    return sampled(
-        lambda x, y, z: density((z + 0.25) / 0.5), (cells, across, across), (-half, -half, -0.25), edge
-    )
+    return sampled(lambda x, y, z: density((z + 0.25) / 0.5), (cells, across, across), (-half, -half, -0.25), edge)
 
 
 def sphere(cells: int, radius: float = 0.7, ramp: float = 2.0) -> DensityGrid:

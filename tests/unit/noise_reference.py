@@ -68,9 +68,7 @@ def kernels(
     else:
         envelope = np.exp(-distances / (2 * constants.SIGMA))
     angle = (words >> np.uint32(16)) / 65536 * theta
-    direction = np.stack(
-        [np.cos(angle), np.sin(angle)] + [np.zeros_like(angle)] * (vectors.shape[-1] - 2), -1
-    )
+    direction = np.stack([np.cos(angle), np.sin(angle)] + [np.zeros_like(angle)] * (vectors.shape[-1] - 2), -1)
     if vectors.shape[-1] == 3:
         direction = direction @ TURN.T
     along = (vectors * direction).sum(-1)
@@ -81,9 +79,7 @@ def window(distances: Floats, dims: int) -> Floats:
     return np.clip(1 - (distances / constants.KERNEL_RADIUS[dims]) ** 2, 0, None) ** 2
 
 
-def single_octave(
-    x: Floats, first: int, last: int, salt: int, phi: float, theta: float, gaussian: bool = False
-) -> Floats:
+def single_octave(x: Floats, first: int, last: int, salt: int, phi: float, theta: float, gaussian: bool = False) -> Floats:
     """N(x) of eq. 2, positions in cells (N, d)."""
     d, vectors, words = sorted_points(x, salt)
     envelope, stripes = kernels(d, vectors, words, phi, theta, gaussian)
@@ -127,9 +123,7 @@ def highest_stone(
     return np.maximum(height[rows, top], 0.0), words[rows, top]
 
 
-def moments(
-    dims: int, first: int, last: int, phi: float, theta: float, gaussian: bool
-) -> tuple[float, float]:
+def moments(dims: int, first: int, last: int, phi: float, theta: float, gaussian: bool) -> tuple[float, float]:
     """Mean and deviation over the package's positions: powers of the root of g^(d+1) = g + 1."""
     roots = np.roots([1.0, *[0.0] * (dims - 1), -1.0, -1.0])
     golden = float(np.real(roots[np.argmax(np.real(roots))]))
@@ -168,8 +162,7 @@ def relief(
     frequencies = lacunarity ** np.arange(octaves, dtype=np.float64)
     weights = gain ** np.arange(octaves) / frequencies
     total = sum(
-        w
-        * single_octave(x * f, first, last, seed + i * OCTAVE_SALT, stripe_frequency, stripe_spread, gaussian)
+        w * single_octave(x * f, first, last, seed + i * OCTAVE_SALT, stripe_frequency, stripe_spread, gaussian)
         for i, (w, f) in enumerate(zip(weights, frequencies, strict=True))
     )
     z = (total - mean * weights.sum()) / (ETA * deviation * np.sqrt((weights**2).sum()))

@@ -44,8 +44,7 @@ def test_powers_add():
 
 
 def test_relief_that_makes_all_the_contrast_leaves_none():
-    found = albedo_apart(photo(np.zeros((SIDE, SIDE)), field(2, 3, 0.4)), MASK,
-                         [grey(field(3 + i, 3, 0.4)) for i in range(3)])
+    found = albedo_apart(photo(np.zeros((SIDE, SIDE)), field(2, 3, 0.4)), MASK, [grey(field(3 + i, 3, 0.4)) for i in range(3)])
     assert deviation(found) < 0.12
 
 

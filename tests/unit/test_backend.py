@@ -68,9 +68,7 @@ def test_the_users_own_is_refused_when_too_old(
         find_llvm()
 
 
-def test_the_users_own_is_refused_when_it_is_no_library(
-    machine: dict[str, int | None], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_users_own_is_refused_when_it_is_no_library(machine: dict[str, int | None], monkeypatch: pytest.MonkeyPatch) -> None:
     machine["/a/libLLVM.so.23"] = 23
     monkeypatch.setenv("DRJIT_LIBLLVM_PATH", "/own/nothing.so")
     with pytest.raises(BackendError, match=r"nothing[.]so cannot be loaded"):

@@ -35,9 +35,7 @@ def test_twelve_steps_go_round_without_the_end() -> None:
     assert any_angle("0:360:12") == [30.0 * i for i in range(12)]
 
 
-@pytest.mark.parametrize(
-    "text", ["", "a", "0:360", "0:360:0", "0:360:1.5", "0:360:-2", "1,,2", "nan", "inf", "0:inf:3"]
-)
+@pytest.mark.parametrize("text", ["", "a", "0:360", "0:360:0", "0:360:1.5", "0:360:-2", "1,,2", "nan", "inf", "0:inf:3"])
 def test_angles_that_are_not_understood(text: str) -> None:
     with pytest.raises(InputError, match="START:STOP:COUNT"):
         any_angle(text)

@@ -118,7 +118,7 @@ def test_what_goes_wrong_inside(
     error: BaseException, code: int, says: str, detail: Path, capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
-    monkeypatch.setattr("voldetail.cli.commands.show.load_detail", _raising(error))
+    monkeypatch.setattr("voldetail.recover.files.load_any", _raising(error))
     assert main(["show", str(detail)]) == code
     shown = capsys.readouterr()
     assert says in shown.err
@@ -153,10 +153,7 @@ def test_compare_a_picture_with_itself_and_another(capsys: pytest.CaptureFixture
     assert same["distance"] == 0
     assert other["distance"] > 1.5 * other["halves_of_a"]["distance"] > 0
     assert other["distance"] == pytest.approx(sum(other["parts"].values()))
-    assert (
-        main(["compare", "skimage:gravel", "skimage:grass", "--metric", "published", "--resolution", "128"])
-        == 0
-    )
+    assert main(["compare", "skimage:gravel", "skimage:grass", "--metric", "published", "--resolution", "128"]) == 0
     assert "level 2" in capsys.readouterr().out
 
 
@@ -170,9 +167,7 @@ def test_plain_progress_comes_every_few_seconds() -> None:
         for second in range(21):
             now[0] = float(second)
             stage = "covering" if second < 18 else "refining"
-            view.searching(
-                Progress(stage, second + 1, 99, float("inf") if second < 18 else 2.5, second, 99 - second)
-            )
+            view.searching(Progress(stage, second + 1, 99, float("inf") if second < 18 else 2.5, second, 99 - second))
         view.step("writing")
     lines = stream.getvalue().splitlines()
     assert len(lines) == 18 // LINE_SECONDS + 1 + 1 + 1  # at 0, 5, 10, 15; at the new stage; the step

@@ -61,9 +61,7 @@ def test_a_mesh_file_as_proxy() -> None:
     assert (setup.proxy.kind, setup.proxy.mesh) == ("mesh", Path.cwd() / "rock.ply")
 
 
-@pytest.mark.parametrize(
-    "name", ['a "quoted" name.png', "caf\u00e9 \U0001f600.png", "back\\slash.png", "123", "true"]
-)
+@pytest.mark.parametrize("name", ['a "quoted" name.png', "caf\u00e9 \U0001f600.png", "back\\slash.png", "123", "true"])
 def test_odd_file_names(name: str) -> None:
     assert read(photo=name, light="1,2").photo.path == str(Path.cwd() / name)
 

@@ -62,15 +62,11 @@ def test_schema_describes_every_property_and_names_the_format() -> None:
     assert made["properties"]["format"]["const"] == "voldetail.detail"
     assert {"format", "version", "noise", "relief", "reflectance"} <= set(made["required"])
     records = [made, *(d for d in made["$defs"].values() if "properties" in d)]
-    missing = [
-        name for r in records for name, entry in r["properties"].items() if not entry.get("description")
-    ]
+    missing = [name for r in records for name, entry in r["properties"].items() if not entry.get("description")]
     assert missing == []
 
 
-@pytest.mark.parametrize(
-    "key", [p.key for p in PARAMETERS if p.scale not in ("choice", "integer") and p.count == 1]
-)
+@pytest.mark.parametrize("key", [p.key for p in PARAMETERS if p.scale not in ("choice", "integer") and p.count == 1])
 def test_bounds_are_inclusive_and_beyond_them_is_refused(key: str) -> None:
     low, high = bounds(key)
     for value in (low, high):

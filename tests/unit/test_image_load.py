@@ -39,9 +39,7 @@ def deep_png(values) -> bytes:
     height, width, channels = values.shape
     rows = values.astype(">u2").view(np.uint8).reshape(height, -1)
     lines = [b"\0" + rows[0].tobytes()]
-    lines += [
-        b"\2" + (rows[i] - rows[i - 1]).tobytes() if i % 2 else b"\0" + rows[i].tobytes() for i in range(1, height)
-    ]
+    lines += [b"\2" + (rows[i] - rows[i - 1]).tobytes() if i % 2 else b"\0" + rows[i].tobytes() for i in range(1, height)]
     colour_type = {1: 0, 2: 4, 3: 2, 4: 6}[channels]
     header = chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 16, colour_type, 0, 0, 0))
     return b"\x89PNG\r\n\x1a\n" + header + chunk(b"IDAT", zlib.compress(b"".join(lines))) + chunk(b"IEND", b"")

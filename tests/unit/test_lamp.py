@@ -69,8 +69,10 @@ def test_the_fall_off_on_a_plane_in_closed_form() -> None:
 
 
 @pytest.mark.parametrize(
-    "lamp", [
-        Lamp(position=(0.3, -0.2, 1.5), strength=0.7), Lamp(direction=(0.6, 0.0, 0.8)),
+    "lamp",
+    [
+        Lamp(position=(0.3, -0.2, 1.5), strength=0.7),
+        Lamp(direction=(0.6, 0.0, 0.8)),
         Lamp(position=(0.3, -0.2, 1.5), strength=0.7, axis=(0.0, 0.6, -0.8), cone=0.7),
     ],
 )

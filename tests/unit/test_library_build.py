@@ -87,9 +87,7 @@ def test_a_chunk_that_kills_every_process_is_given_up(tmp_path: Path) -> None:
         ("nan", 1, InputError, "Entry 55 of counted has numbers that are NaN"),
     ],
 )
-def test_what_a_source_raises_is_raised(
-    trouble: str, workers: int, error: type[Exception], says: str, tmp_path: Path
-) -> None:
+def test_what_a_source_raises_is_raised(trouble: str, workers: int, error: type[Exception], says: str, tmp_path: Path) -> None:
     failing = replace(SOURCES[0], trouble=trouble, at=55, marks=tmp_path)
     with pytest.raises(error, match=says):
         build([failing], 90, tmp_path / "lib", workers=workers, chunk=30)

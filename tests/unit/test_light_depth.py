@@ -15,9 +15,7 @@ UPPER = np.array(LOWER) + EDGE * np.array(SHAPE[::-1])
 SIGNS = list(itertools.product((1, -1), repeat=3))
 DIRECTIONS = [tuple((np.array(s) * d / np.linalg.norm(d)).tolist()) for s in SIGNS for d in ((5, 2, 1), (1, 4, 3), (2, 1, 3))]
 POSITIONS = [(2.0, 0.3, 0.2), (-3.0, 1.5, -1.0), (0.1, 2.5, 0.0), (0.2, -1.9, 0.3), (0.0, 0.0, 2.0), (0.5, 0.4, -1.5)]
-LAMPS = [Lamp(direction=d) for d in [(0.0, 0.0, 1.0), (-1.0, 0.0, 0.0), *DIRECTIONS]] + [
-    Lamp(position=p) for p in POSITIONS
-]
+LAMPS = [Lamp(direction=d) for d in [(0.0, 0.0, 1.0), (-1.0, 0.0, 0.0), *DIRECTIONS]] + [Lamp(position=p) for p in POSITIONS]
 
 
 def inside(count: int = 300, margin: float = 0.0) -> np.ndarray:
@@ -93,9 +91,7 @@ def test_the_error_in_a_ball_falls_with_the_square_of_the_edge() -> None:
     wanted = primitive(np.sqrt(radius**2 - b2)) - primitive(s)
     errors = []
     for cells in (16, 32, 64):
-        grid = sampled(
-            lambda x, y, z: np.clip(1 - (x * x + y * y + z * z) / radius**2, 0, 1) ** 2, (cells,) * 3, edge=2 / cells
-        )
+        grid = sampled(lambda x, y, z: np.clip(1 - (x * x + y * y + z * z) / radius**2, 0, 1) ** 2, (cells,) * 3, edge=2 / cells)
         errors.append(float(np.abs(np.asarray(LightDepth(grid, lamp).at(points(places))) - wanted).mean()))
     # Measured 7.5e-3, 2.0e-3, 4.8e-4: the grid's own trilinear error and the sweep's, both of second order.
     assert errors[0] / errors[1] > 3

@@ -90,12 +90,12 @@ def test_single_scattering_in_a_slab(name: str, direction: tuple[float, float, f
 def test_errors_fall_with_the_square_of_the_step(medium: Medium, perspective: bool) -> None:
     """Mean errors over means, from steps of 1/32 edge; the largest of the six cases, measured:
 
-        step     covered   ambient   diffuse   specular
-        2        0.0019    0.0139    0.0232    0.552
-        1        0.0008    0.0073    0.0114    0.301
-        1/2      0.0004    0.0009    0.0016    0.068
-        1/4      0.0001    0.0003    0.0004    0.012
-        1/8      0.00002   0.0001    0.0001    0.003
+    step     covered   ambient   diffuse   specular
+    2        0.0019    0.0139    0.0232    0.552
+    1        0.0008    0.0073    0.0114    0.301
+    1/2      0.0004    0.0009    0.0016    0.068
+    1/4      0.0001    0.0003    0.0004    0.012
+    1/8      0.00002   0.0001    0.0001    0.003
     """
     view = View(-1.1, 1.1, -1.1, 1.1, 32, 32, perspective=perspective)
     grid = cloud(24)

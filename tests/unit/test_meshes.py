@@ -214,9 +214,7 @@ def test_what_holds_no_surface_is_refused(tmp_path, name, content, words):
         load_mesh(tmp_path / name)
 
 
-@pytest.mark.parametrize(
-    "name", ["a.pkl", "a.npz", "a.dict", "a.zip", "a.3mf", "a.dae", "a.step", "a.json", "a", "a.xyz"]
-)
+@pytest.mark.parametrize("name", ["a.pkl", "a.npz", "a.dict", "a.zip", "a.3mf", "a.dae", "a.step", "a.json", "a", "a.xyz"])
 def test_other_suffixes_are_refused_before_the_file_is_opened(tmp_path, name):
     with pytest.raises(InputError, match=r"suffix .*\.obj, \.ply, \.stl, \.off, \.glb, \.gltf"):
         load_mesh(tmp_path / name)  # the file does not exist: that would be another sentence
@@ -445,9 +443,7 @@ def test_corrupted_files_never_raise_anything_else(tmp_path, files, data):
 def test_round_trips_keep_every_sound_triangle(tmp_path, vertices, seed, suffix):
     points = np.array(vertices, dtype=float)
     faces = np.random.default_rng(seed).integers(0, len(points), (10, 3))
-    areas = np.linalg.norm(
-        np.cross(points[faces[:, 1]] - points[faces[:, 0]], points[faces[:, 2]] - points[faces[:, 0]]), axis=1
-    )
+    areas = np.linalg.norm(np.cross(points[faces[:, 1]] - points[faces[:, 0]], points[faces[:, 2]] - points[faces[:, 0]]), axis=1)
     expected = {frozenset(map(tuple, points[f])) for f, area in zip(faces, areas, strict=True) if area > 0}
     path = save(tmp_path / f"a.{suffix}", points, faces)
     if not expected:

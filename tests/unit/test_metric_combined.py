@@ -78,9 +78,7 @@ def test_it_grows_along_a_family_from_the_photo_to_a_wrong_picture(family: str) 
         "blur": [ndimage.gaussian_filter(encoded, 3 * t) for t in steps],
         "contrast": [encoded.mean() + (encoded - encoded.mean()) * (1 - 0.8 * t) for t in steps],
         # Weights on a quarter circle keep the contrast, which a straight blend would lower in the middle.
-        "phase": [
-            mean + np.cos(t * np.pi / 2) * (encoded - mean) + np.sin(t * np.pi / 2) * (wrong - mean) for t in steps
-        ],
+        "phase": [mean + np.cos(t * np.pi / 2) * (encoded - mean) + np.sin(t * np.pi / 2) * (wrong - mean) for t in steps],
     }[family]
     found = [distance(reference, describe(to_linear(p.astype(np.float32)), like=reference)) for p in shown]
     assert np.all(np.diff(found) > 0), found

@@ -39,9 +39,7 @@ def equation_5(values: np.ndarray, sigma: float, frequency: float, angle: float)
     return float(np.mean(responses) / np.abs(kernel).sum()), float(np.std(responses) / np.abs(kernel).sum())
 
 
-@pytest.mark.parametrize(
-    ("scale", "frequency", "index"), [(0, None, 0), (0, 0, 5), (0, 2, 3), (1, 0, 15), (1, 3, 8), (2, 1, 11)]
-)
+@pytest.mark.parametrize(("scale", "frequency", "index"), [(0, None, 0), (0, 0, 5), (0, 2, 3), (1, 0, 15), (1, 3, 8), (2, 1, 11)])
 def test_responses_are_equation_5(scale: int, frequency: int | None, index: int) -> None:
     values = 0.5 + 0.15 * np.random.default_rng(scale).standard_normal((48, 48)).clip(-3, 3)
     found = measure(layers(picture(values)), {})[f"scale {scale}"]

@@ -70,8 +70,7 @@ def test_it_knows_a_relief_lit_from_the_other_side_and_the_others_hardly_do() ->
     for metric in ("gradient-skew", "combined", "published"):
         asking = describe(lit(1), metric=metric)
         same, other = (
-            np.mean([distance(asking, describe(lit(seed, slope), like=asking)) for seed in (2, 3, 4)])
-            for slope in (0.6, -0.6)
+            np.mean([distance(asking, describe(lit(seed, slope), like=asking)) for seed in (2, 3, 4)]) for slope in (0.6, -0.6)
         )
         ratios[metric] = other / same
     assert "gradient-skew" in METRICS

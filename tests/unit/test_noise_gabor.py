@@ -35,17 +35,13 @@ def columns(x: np.ndarray, float_type: Any = Float64) -> tuple[Any, ...]:
     return tuple(float_type(np.ascontiguousarray(x[:, axis])) for axis in range(x.shape[1]))
 
 
-def octave_of(
-    x: np.ndarray, ranks: tuple[int, int], phi: float, theta: float, gaussian: bool = False
-) -> np.ndarray:
+def octave_of(x: np.ndarray, ranks: tuple[int, int], phi: float, theta: float, gaussian: bool = False) -> np.ndarray:
     settings = NoiseSettings.from_ranks(x.shape[1], *ranks, 1, gaussian)
     salt, phi, theta = dr.opaque(mi.UInt32, SALT), dr.opaque(Float64, phi), dr.opaque(Float64, theta)
     return gabor.single_octave(columns(x), settings, salt, phi, theta).numpy()
 
 
-def relief_of(
-    x: np.ndarray, settings: NoiseSettings, float_type: Any = Float64, seed: int = SALT, **changed: Any
-) -> Any:
+def relief_of(x: np.ndarray, settings: NoiseSettings, float_type: Any = Float64, seed: int = SALT, **changed: Any) -> Any:
     values = {name: dr.opaque(float_type, v) for name, v in PARAMETERS.items() if name != "curve"}
     values["curve"] = float_type(PARAMETERS["curve"])
     values |= {name: float_type(v) for name, v in changed.items()}
@@ -68,13 +64,9 @@ def test_the_sum_is_that_over_the_fifty_nearest(dims: int, phi: float) -> None:
     assert distances[:, -1].min() > KERNEL_RADIUS[dims]
 
 
-@pytest.mark.parametrize(
-    ("ranks", "gaussian"), [*((s, False) for s in SETS), ((1, 50), True), ((2, 2), True)]
-)
+@pytest.mark.parametrize(("ranks", "gaussian"), [*((s, False) for s in SETS), ((1, 50), True), ((2, 2), True)])
 @pytest.mark.parametrize("dims", [2, 3])
-def test_whole_relief_against_a_second_implementation(
-    dims: int, ranks: tuple[int, int], gaussian: bool
-) -> None:
+def test_whole_relief_against_a_second_implementation(dims: int, ranks: tuple[int, int], gaussian: bool) -> None:
     x = np.random.default_rng(7).uniform(-30, 30, (2000, dims))
     octaves = 1 if ranks == (1, 2) else 2
     expected = relief(x, *ranks, SALT, octaves=octaves, gaussian=gaussian, **PARAMETERS)

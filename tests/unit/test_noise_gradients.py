@@ -96,9 +96,7 @@ def has(case: Case, name: str) -> bool:
     return not (name == "z" and dims == 2) and not (name in ("lacunarity", "gain") and octaves == 1)
 
 
-@pytest.mark.parametrize(
-    ("case", "name"), [(case, name) for case in CASES for name in NAMES if has(case, name)], ids=str
-)
+@pytest.mark.parametrize(("case", "name"), [(case, name) for case in CASES for name in NAMES if has(case, name)], ids=str)
 def test_both_modes_against_differences(case: Case, name: str) -> None:
     expected = difference(case, name)
     size = np.abs(expected).max()

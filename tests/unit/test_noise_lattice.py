@@ -87,9 +87,7 @@ def test_hash_words_are_these() -> None:
 def test_points_lie_in_their_cells_uniformly() -> None:
     n = 50
     cells = np.array(list(itertools.product(range(-n, n), range(-n, n), range(4))), np.int32)
-    position, _ = feature_point(
-        tuple(mi.Int32(cells[:, a].copy()) for a in range(3)), mi.UInt32(SALT), 3, mi.Float
-    )
+    position, _ = feature_point(tuple(mi.Int32(cells[:, a].copy()) for a in range(3)), mi.UInt32(SALT), 3, mi.Float)
     jitter = np.stack([p.numpy() for p in position], -1)
     assert jitter.min() >= 0.0
     assert jitter.max() < 1.0

@@ -193,9 +193,7 @@ def relief_moved(offsets: dict[str, Any]) -> Any:
     x, y = columns(POINTS)
     settings = NoiseSettings.from_ranks(2, 1, 2, 1, signs=(1.0, -1.0, 1.0), plates=True)
     curve = Float64(np.linspace(0, 1, 11))
-    return relief_function(
-        (x + offsets["x"], y + offsets["y"]), settings, mi.UInt32(5), curve=curve, plates=shape, **values
-    )[0]
+    return relief_function((x + offsets["x"], y + offsets["y"]), settings, mi.UInt32(5), curve=curve, plates=shape, **values)[0]
 
 
 def offsets_of(**steps: float) -> dict[str, Any]:

@@ -63,12 +63,8 @@ def autocorrelation(t: np.ndarray, lag: int, axis: int) -> float:
 @pytest.mark.parametrize("octaves", [1, 4])
 @pytest.mark.parametrize("phi", [0.0, 2.0])
 @pytest.mark.parametrize("ranks", SETS)
-def test_argument_of_the_curve_is_within_bounds_and_uses_them(
-    ranks: tuple[int, int], phi: float, octaves: int
-) -> None:
-    t = argument(
-        plane(0.3), NoiseSettings.from_ranks(3, *ranks, octaves), stripe_frequency=phi, stripe_spread=3.0
-    )
+def test_argument_of_the_curve_is_within_bounds_and_uses_them(ranks: tuple[int, int], phi: float, octaves: int) -> None:
+    t = argument(plane(0.3), NoiseSettings.from_ranks(3, *ranks, octaves), stripe_frequency=phi, stripe_spread=3.0)
     assert np.abs(t).max() <= 1.0
     assert np.quantile(t, 0.01) < -0.6
     assert np.quantile(t, 0.99) > 0.6
@@ -115,9 +111,7 @@ def spread_over_heights(ranks: tuple[int, int]) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("ranks", SETS)
-def test_a_plane_looks_the_same_at_every_height(
-    ranks: tuple[int, int], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_plane_looks_the_same_at_every_height(ranks: tuple[int, int], monkeypatch: pytest.MonkeyPatch) -> None:
     mean, deviation = spread_over_heights(ranks)
     assert mean < 0.04
     assert deviation < 0.04

@@ -81,9 +81,7 @@ def test_sampling_follows_its_density(kd: float, ks: float, n: float, elevation:
 def test_a_wrong_density_would_be_noticed() -> None:
     sample, _ = mi.chi2.BSDFAdapter(PLUGIN, phong(0.4, 0.5, 20.0), wi=direction(45.0))
     _, pdf = mi.chi2.BSDFAdapter(PLUGIN, phong(0.4, 0.5, 22.0), wi=direction(45.0))
-    test = mi.chi2.ChiSquareTest(
-        mi.chi2.SphericalDomain(), sample, pdf, sample_dim=3, sample_count=200_000, ires=16
-    )
+    test = mi.chi2.ChiSquareTest(mi.chi2.SphericalDomain(), sample, pdf, sample_dim=3, sample_count=200_000, ires=16)
     assert not test.run(quiet=True)
 
 
@@ -142,9 +140,7 @@ def test_never_more_light_out_than_in(n: float) -> None:
 
 
 def test_albedo_of_each_lobe_in_closed_form() -> None:
-    assert albedo(mi.load_dict(phong([0.1, 0.5, 0.9], 0.0, 5.0)), direction(90)) == pytest.approx(
-        [0.1, 0.5, 0.9], abs=1e-3
-    )
+    assert albedo(mi.load_dict(phong([0.1, 0.5, 0.9], 0.0, 5.0)), direction(90)) == pytest.approx([0.1, 0.5, 0.9], abs=1e-3)
     assert albedo(mi.load_dict(phong(0.0, 0.8, 30.0)), direction(90)) == pytest.approx([0.8] * 3, abs=1e-3)
 
 
@@ -218,8 +214,6 @@ def test_a_white_room_shows_the_albedo(integrator: str) -> None:
         }
     )
     picture = np.array(mi.render(scene, spp=256, seed=1))
-    sides = sorted(
-        (picture[4:12, 1:7].mean((0, 1)), picture[4:12, 9:15].mean((0, 1))), key=lambda side: side[0]
-    )
+    sides = sorted((picture[4:12, 1:7].mean((0, 1)), picture[4:12, 9:15].mean((0, 1))), key=lambda side: side[0])
     assert sides[0] == pytest.approx([0.1] * 3, abs=2e-3)
     assert sides[1] == pytest.approx([0.5, 0.7, 0.9], abs=1e-2)

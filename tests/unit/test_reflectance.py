@@ -40,9 +40,7 @@ def test_columns_of_nothing_do_no_harm() -> None:
 
 
 @settings(max_examples=300, deadline=None, derandomize=True)
-@given(
-    arrays(np.float64, (24, 3), elements=st.floats(0, 1e4)), arrays(np.float64, 24, elements=st.floats(0, 1e4))
-)
+@given(arrays(np.float64, (24, 3), elements=st.floats(0, 1e4)), arrays(np.float64, 24, elements=st.floats(0, 1e4)))
 def test_bounds_hold_for_any_problem(matrix: NDArray[np.float64], values: NDArray[np.float64]) -> None:
     found = bounded_least_squares(matrix, values)
     assert found.min() >= 0
@@ -138,9 +136,7 @@ def test_a_mask_of_fewer_pixels_than_groups_is_solved() -> None:
 
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(st.integers(0, 2**32 - 1), st.floats(0, 4), st.floats(0, 3), st.booleans())
-def test_no_coefficient_leaves_its_bounds_whatever_the_photo(
-    seed: int, level: float, contrast: float, specular: bool
-) -> None:
+def test_no_coefficient_leaves_its_bounds_whatever_the_photo(seed: int, level: float, contrast: float, specular: bool) -> None:
     photo = np.abs(level + contrast * np.random.default_rng(seed).normal(size=(SIDE, SIDE))).astype(np.float32)
     found = solve(photo, parts(seed % 7), WHOLE, specular=specular)
     for value in (found.ambient, found.diffuse):

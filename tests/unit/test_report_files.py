@@ -36,7 +36,8 @@ def result(rows: int = 48, columns: int = 64, **changes: Any) -> FitResult:
         photo=Photo(pixels, "ab" * 32, ("rotated by EXIF",)),
         mask=np.ones((rows, columns), bool),
         shape=(480, 640),
-        zone=(10, 20, 128, 96), unevenness=0.62,
+        zone=(10, 20, 128, 96),
+        unevenness=0.62,
     )
     made = FitResult(
         detail=Detail(name="wall", noise_floor=NoiseFloor(other_seed=1.25, photo_halves=1.5)),

@@ -19,9 +19,7 @@ def test_a_contact_sheet_shows_each_frame(tmp_path: Path, count: int) -> None:
     red = (pixels[..., 0] > 200) & (pixels[..., 1] < 60)
     # Tiles of the fullest row and column, counted by the edges at which red begins.
     across = max(np.count_nonzero(np.diff(row.astype(int)) == 1) for row in np.pad(red, ((0, 0), (1, 0))))
-    down = max(
-        np.count_nonzero(np.diff(column.astype(int)) == 1) for column in np.pad(red, ((1, 0), (0, 0))).T
-    )
+    down = max(np.count_nonzero(np.diff(column.astype(int)) == 1) for column in np.pad(red, ((1, 0), (0, 0))).T)
     assert across * down >= count > across * (down - 1)
 
 

@@ -73,9 +73,7 @@ def test_the_same_seed_is_the_same_search(solver: Solver) -> None:
 
 def test_another_seed_is_another_search() -> None:
     start = np.full(4, 0.5)
-    first, second = (
-        minimise(CMAES(10), Counting(), start, memory=Memory(0.2), seed=seed, budget=50).vector for seed in (1, 2)
-    )
+    first, second = (minimise(CMAES(10), Counting(), start, memory=Memory(0.2), seed=seed, budget=50).vector for seed in (1, 2))
     assert (first != second).any()
 
 
@@ -104,9 +102,7 @@ def test_numbers_that_wrap_may_leave_the_box() -> None:
     def ring(vector: Vector) -> float:
         return float(1 - np.cos(2 * np.pi * (vector[0] - 0.95)) + (vector[1] - 0.5) ** 2)
 
-    found = minimise(
-        CMAES(10, periodic=(0,)), Counting(ring), np.array([0.1, 0.5]), memory=Memory(0.1), seed=1, budget=400
-    )
+    found = minimise(CMAES(10, periodic=(0,)), Counting(ring), np.array([0.1, 0.5]), memory=Memory(0.1), seed=1, budget=400)
     assert found.vector[0] % 1.0 == pytest.approx(0.95, abs=0.02)
     assert found.vector[0] < 0.1  # the short way round, through 0
 
@@ -137,13 +133,9 @@ def test_what_a_search_learnt_serves_the_next() -> None:
 
     kept, anew = [], []
     for seed in range(5):
-        first = minimise(
-            CMAES(10), Counting(valley), np.array([0.9, 0.2, 0.8, 0.1]), memory=Memory(0.2), seed=seed, budget=150
-        )
+        first = minimise(CMAES(10), Counting(valley), np.array([0.9, 0.2, 0.8, 0.1]), memory=Memory(0.2), seed=seed, budget=150)
         assert first.memory.covariance is not None
         assert first.memory.covariance.shape == (4, 4)
         for memory, values in ((first.memory, kept), (Memory(first.memory.spread), anew)):
-            values.append(
-                minimise(CMAES(10), Counting(valley), first.vector, memory=memory, seed=seed + 100, budget=80).value
-            )
+            values.append(minimise(CMAES(10), Counting(valley), first.vector, memory=memory, seed=seed + 100, budget=80).value)
     assert np.median(np.array(kept) / np.array(anew)) < 0.8

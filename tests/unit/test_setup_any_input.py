@@ -31,9 +31,7 @@ TEXT = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=20
 def setups(draw: st.DrawFn) -> dict[str, Any]:
     light = draw(
         st.fixed_dictionaries({"direction": st.tuples(NUMBERS, NUMBERS, st.floats(0.01, 300))})
-        | st.fixed_dictionaries(
-            {"kind": st.just("point"), "position": st.tuples(NUMBERS, NUMBERS, st.floats(0.01, 300))}
-        )
+        | st.fixed_dictionaries({"kind": st.just("point"), "position": st.tuples(NUMBERS, NUMBERS, st.floats(0.01, 300))})
         | st.fixed_dictionaries({"kind": st.just("flash"), "height": st.floats(0.05, 100)})
     )
     kind = draw(st.sampled_from([k for k in SHAPES if k != "mesh"]))
@@ -102,12 +100,7 @@ KEYS = [
     "seed",
     "output",
 ]
-VALUES = (
-    st.text()
-    | st.floats().map(repr)
-    | st.integers().map(repr)
-    | st.lists(st.integers() | st.floats()).map(repr)
-)
+VALUES = st.text() | st.floats().map(repr) | st.integers().map(repr) | st.lists(st.integers() | st.floats()).map(repr)
 
 
 @given(st.sampled_from(KEYS) | st.text(), VALUES)

@@ -215,9 +215,7 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
 
 
 def test_python_callers() -> None:
-    setup = setup_from(
-        {"photo": {"path": Path("wall.jpg")}, "light": parse_light("flash"), "output": Path("out")}
-    )
+    setup = setup_from({"photo": {"path": Path("wall.jpg")}, "light": parse_light("flash"), "output": Path("out")})
     assert setup.light.kind == "flash"
     assert setup.output == Path.cwd() / "out"
     with pytest.raises(InputError, match=r"The setup: light is missing"):

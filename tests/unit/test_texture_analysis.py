@@ -35,7 +35,7 @@ def test_the_axes_decorrelate_and_are_a_rotation() -> None:
 def test_shuffled_pixels_have_the_same_axes() -> None:
     colours = blotches().reshape(-1, 3)
     shuffled = colours[np.random.default_rng(1).permutation(len(colours))]
-    assert principal_axes(shuffled) == pytest.approx(principal_axes(colours), abs=1e-5)
+    assert principal_axes(shuffled) == pytest.approx(principal_axes(colours), abs=5e-5)  # float sums in another order
 
 
 @pytest.mark.parametrize("shape", ["uniform", "two", "ties", "exponential"])

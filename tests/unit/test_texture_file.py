@@ -14,9 +14,7 @@ from voldetail.errors import InputError
 
 CURVE = (0.1, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.7, 0.9)
 BANDS = ColourChannel(weights=(0.5, 0.25, 0.0), curve=CURVE)
-LOBES = ColourChannel(
-    weights=(), lobes=(Lobe(frequency=0.1, angle=0.5, bandwidth=0.02, variance=1.5),), curve=CURVE
-)
+LOBES = ColourChannel(weights=(), lobes=(Lobe(frequency=0.1, angle=0.5, bandwidth=0.02, variance=1.5),), curve=CURVE)
 TEXTURE = ColourTexture(name="Stein", seed=7, channels=(BANDS, BANDS, LOBES), texels=(64, 32), photo="stein.png")
 
 

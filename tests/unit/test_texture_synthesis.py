@@ -44,9 +44,7 @@ def test_the_colour_is_the_formula(dims: int, encoding: str) -> None:
     values = np.zeros((500, 3))
     for c, channel in enumerate(texture.channels):
         weights = np.array(slice_weights(channel.weights) if dims == 3 else channel.weights)
-        noise = sum(
-            w * reference.noise(x.astype(np.float64), i, 3, wavelet_tile(dims))[:, c] for i, w in enumerate(weights)
-        )
+        noise = sum(w * reference.noise(x.astype(np.float64), i, 3, wavelet_tile(dims))[:, c] for i, w in enumerate(weights))
         values[:, c] = curve_at(channel.curve, noise / np.sqrt(variance(dims) * np.sum(weights**2)))
     expected = values @ np.reshape(texture.axes, (3, 3))
     expected = np.clip(to_linear(expected) if encoding == "srgb" else expected, 0, 1)
@@ -218,9 +216,7 @@ GAUSSIAN = tuple(gaussian_curve(0.5, 0.1).tolist())
 
 
 def test_channels_of_lobes_have_their_curves_and_their_direction() -> None:
-    lobes = ColourChannel(
-        weights=(), lobes=(Lobe(frequency=0.1, angle=0.0, bandwidth=0.01, variance=3.0),), curve=GAUSSIAN
-    )
+    lobes = ColourChannel(weights=(), lobes=(Lobe(frequency=0.1, angle=0.0, bandwidth=0.01, variance=3.0),), curve=GAUSSIAN)
     still = ColourChannel(weights=(0.0,), curve=(0.0,) * 10)
     texture = ColourTexture(channels=(lobes, still, still), texels=(64, 64), encoding="linear")
     made = picture(texture, (512, 512))[..., 0].astype(np.float64)
@@ -235,9 +231,7 @@ def test_channels_of_lobes_have_their_curves_and_their_direction() -> None:
 
 
 def test_a_solid_of_lobes_is_laid_on_from_three_sides() -> None:
-    lobes = ColourChannel(
-        weights=(), lobes=(Lobe(frequency=0.1, angle=0.0, bandwidth=0.05, variance=1.0),), curve=GAUSSIAN
-    )
+    lobes = ColourChannel(weights=(), lobes=(Lobe(frequency=0.1, angle=0.0, bandwidth=0.05, variance=1.0),), curve=GAUSSIAN)
     still = ColourChannel(weights=(0.0,), curve=(0.0,) * 10)
     texture = ColourTexture(channels=(lobes, still, still), texels=(64, 64), encoding="linear")
     random = np.random.default_rng(4)

@@ -160,7 +160,7 @@ def test_no_array_is_as_large_as_the_grid(monkeypatch: pytest.MonkeyPatch) -> No
     surface = tiled_isosurface(texture)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    block = 40 * (SIDE + 1) ** 3
+    block = 60 * (SIDE + 1) ** 3  # bytes for each of its middles: densities, normals and their copies
     assert peak < BYTES_A_TILED_VERTEX * len(surface.vertices) + block
     assert 3 * peak < 24 * texture.shell.plan.cells  # what the whole grid's surface takes for its cells alone
     assert set(sizes) == {SIDE + 1}

@@ -44,7 +44,7 @@ def as_light(light: LightLike) -> Light:
         numbers = [float(v) for v in light]
     except (TypeError, ValueError):
         raise InputError(
-            f"The light is a {type(light).__name__}; give a text such as \"135,40\", (azimuth, elevation), (x, y, z) or a Light."
+            f'The light is a {type(light).__name__}; give a text such as "135,40", (azimuth, elevation), (x, y, z) or a Light.'
         ) from None
     return parse_light(",".join(repr(v) for v in numbers))
 

@@ -29,9 +29,19 @@ UPRIGHT: Rotation = (0.0, 0.0, 0.0)
 
 
 def render(
-    detail: AnyDetail, shape: ShapeLike = "sphere", *, light: LightLike | None = None, envmap: str | Path | None = None,
-    scale: float = 1.0, size: tuple[int, int] = (640, 480), camera: CameraSetup | None = None, rotation: Rotation = UPRIGHT,
-    subsamples: int = 2, samples: int = 64, shading: Shading = "phong", background: float | Colour = 0.0,
+    detail: AnyDetail,
+    shape: ShapeLike = "sphere",
+    *,
+    light: LightLike | None = None,
+    envmap: str | Path | None = None,
+    scale: float = 1.0,
+    size: tuple[int, int] = (640, 480),
+    camera: CameraSetup | None = None,
+    rotation: Rotation = UPRIGHT,
+    subsamples: int = 2,
+    samples: int = 64,
+    shading: Shading = "phong",
+    background: float | Colour = 0.0,
 ) -> Picture:
     """Return a linear picture (rows, columns, 3) of a detail on a shape, under a light or an environment map.
 
@@ -56,8 +66,16 @@ def render(
 
 
 def relight(
-    detail: AnyDetail, shape: ShapeLike = "plane", *, azimuths: Sequence[float], elevations: Sequence[float], scale: float = 1.0,
-    size: tuple[int, int] = (480, 480), camera: CameraSetup | None = None, rotation: Rotation = UPRIGHT, subsamples: int = 2,
+    detail: AnyDetail,
+    shape: ShapeLike = "plane",
+    *,
+    azimuths: Sequence[float],
+    elevations: Sequence[float],
+    scale: float = 1.0,
+    size: tuple[int, int] = (480, 480),
+    camera: CameraSetup | None = None,
+    rotation: Rotation = UPRIGHT,
+    subsamples: int = 2,
     background: float | Colour = 0.0,
 ) -> Iterator[tuple[float, float, Picture]]:
     """Yield (azimuth, elevation, picture) for each pair of angles in degrees; the shape is made once.
@@ -106,9 +124,7 @@ def export(
         return exported(detail, file, path, ExportOptions(cells=cells, scale=checked_scale(scale), rotation=rotation))
 
 
-def gallery(
-    result: FitResult, on_progress: Callable[[str], None] = lambda what: None, mesh: str | Path = "cylinder"
-) -> Gallery:
+def gallery(result: FitResult, on_progress: Callable[[str], None] = lambda what: None, mesh: str | Path = "cylinder") -> Gallery:
     """Return the pictures of a fit's report: the photo, the fit, other lights, a grazing view, a sphere and ``mesh``."""
     return apply.gallery(result, on_progress, mesh)
 

@@ -16,8 +16,13 @@ LEAST_SIDE, MOST_SIDE = 16, 1024
 
 
 def bake(
-    detail: Detail, mesh: str | Path = "sphere", *, cells: int = 128, scale: float = 1.0,
-    rotation: tuple[float, float, float] = (0.0, 0.0, 0.0), tell: Tell = quiet,
+    detail: Detail,
+    mesh: str | Path = "sphere",
+    *,
+    cells: int = 128,
+    scale: float = 1.0,
+    rotation: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    tell: Tell = quiet,
 ) -> DensityGrid:
     """Return the densities of the volume ``detail`` on ``mesh``, ``cells`` to the 2 scene units that a shape is long.
 

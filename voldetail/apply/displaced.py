@@ -16,7 +16,11 @@ from voldetail.geometry.proxy import make_proxy
 
 
 def displaced_mesh(
-    detail: AnyDetail, shape: str | Path, *, edge: float, scale: float = 1.0,
+    detail: AnyDetail,
+    shape: str | Path,
+    *,
+    edge: float,
+    scale: float = 1.0,
     rotation: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
     """Return vertices (V, 3) and faces (F, 3) of ``shape`` displaced by ``detail``, P' = P + A_d R(P) N_P (GD10 section 6).

@@ -35,9 +35,7 @@ EDGE = 1.5
 """Length of the mesh's edges in pixels: a report's small pictures come in half the time that one pixel would take."""
 
 
-def gallery(
-    result: FitResult, on_progress: Callable[[str], None] = lambda what: None, mesh: str | Path = "cylinder"
-) -> Gallery:
+def gallery(result: FitResult, on_progress: Callable[[str], None] = lambda what: None, mesh: str | Path = "cylinder") -> Gallery:
     """Return the Gallery of a FitResult; ``mesh`` is the kind of proxy or file for its last picture."""
     detail, setup, target = result.detail, result.setup, result.target
     surface = build(setup, target.shape, target.zone)
@@ -59,16 +57,30 @@ def gallery(
     # The relief keeps the size it has in the photo, where a proxy is 2 across.
     scale = 1.0
     grazing = render(
-        detail, "plane", light=lamp, scale=scale, size=side, rotation=(GRAZING_TILT, 0.0, 0.0), edge=EDGE,
-        camera=CameraSetup(kind="perspective"), background=result.background,
+        detail,
+        "plane",
+        light=lamp,
+        scale=scale,
+        size=side,
+        rotation=(GRAZING_TILT, 0.0, 0.0),
+        edge=EDGE,
+        camera=CameraSetup(kind="perspective"),
+        background=result.background,
     )
     on_progress("a sphere")
     sphere = render(detail, "sphere", light=lamp, scale=scale, size=side, edge=EDGE, background=result.background)
     on_progress(f"a {Path(mesh).stem}")
     other = render(detail, mesh, light=lamp, scale=scale, size=side, edge=EDGE, background=result.background)
     return Gallery(
-        photo=target.pixels, mask=target.mask, overlay=overlay(setup, target), fitted=fitted, lights=lights,
-        grazing=grazing, sphere=sphere, mesh=other, mesh_name=Path(mesh).stem,
+        photo=target.pixels,
+        mask=target.mask,
+        overlay=overlay(setup, target),
+        fitted=fitted,
+        lights=lights,
+        grazing=grazing,
+        sphere=sphere,
+        mesh=other,
+        mesh_name=Path(mesh).stem,
     )
 
 
@@ -97,9 +109,7 @@ def overlay(setup: Setup, target: Any) -> Picture:
     return picture.astype(np.float32)
 
 
-def _outline(
-    setup: Setup, shape: tuple[int, int], size: tuple[int, int]
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _outline(setup: Setup, shape: tuple[int, int], size: tuple[int, int]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Return (edge of the proxy in the photo, where it is) as masks of ``size``; a plane that fills it has no edge."""
     if faces_camera(setup):
         return np.zeros(size, dtype=bool), np.ones(size, dtype=bool)

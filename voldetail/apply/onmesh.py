@@ -42,10 +42,21 @@ PIXELS_AN_EDGE = 1.0
 
 
 def render(
-    detail: AnyDetail, mesh: str | Path = "sphere", *, light: Light | None = None, envmap: Path | None = None,
-    scale: float = 1.0, size: tuple[int, int] = (640, 480), camera: CameraSetup | None = None,
-    rotation: tuple[float, float, float] = (0.0, 0.0, 0.0), subsamples: int = 2, samples: int = 64,
-    shading: Shading = "phong", background: float | Colour = 0.0, edge: float = PIXELS_AN_EDGE, tell: Tell = quiet,
+    detail: AnyDetail,
+    mesh: str | Path = "sphere",
+    *,
+    light: Light | None = None,
+    envmap: Path | None = None,
+    scale: float = 1.0,
+    size: tuple[int, int] = (640, 480),
+    camera: CameraSetup | None = None,
+    rotation: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    subsamples: int = 2,
+    samples: int = 64,
+    shading: Shading = "phong",
+    background: float | Colour = 0.0,
+    edge: float = PIXELS_AN_EDGE,
+    tell: Tell = quiet,
     on_progress: Progress = unseen,
 ) -> Picture:
     """Return a linear picture (rows, columns, 3) of ``detail`` on ``mesh``: a kind of proxy or a mesh file.
@@ -89,9 +100,17 @@ def render(
 
 
 def relight(
-    detail: AnyDetail, mesh: str | Path = "plane", *, azimuths: Sequence[float], elevations: Sequence[float],
-    scale: float = 1.0, size: tuple[int, int] = (480, 480), camera: CameraSetup | None = None,
-    rotation: tuple[float, float, float] = (0.0, 0.0, 0.0), subsamples: int = 2, background: float | Colour = 0.0,
+    detail: AnyDetail,
+    mesh: str | Path = "plane",
+    *,
+    azimuths: Sequence[float],
+    elevations: Sequence[float],
+    scale: float = 1.0,
+    size: tuple[int, int] = (480, 480),
+    camera: CameraSetup | None = None,
+    rotation: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    subsamples: int = 2,
+    background: float | Colour = 0.0,
     tell: Tell = quiet,
 ) -> Iterator[tuple[float, float, Picture]]:
     """Yield (azimuth, elevation, picture) for every pair of angles in degrees; the geometry is made once.
@@ -165,8 +184,17 @@ def proxy_of(mesh: str | Path, rotation: tuple[float, float, float]) -> ProxySet
 
 
 def _surface(
-    detail: AnyDetail, mesh: str | Path, view: View, proxy: ProxySetup, whole_plane: bool, scale: float, edge: float, tell: Tell,
-    bsdf: dict[str, Any] | None = None, emitters: dict[str, Any] | None = None, on_progress: Progress = unseen,
+    detail: AnyDetail,
+    mesh: str | Path,
+    view: View,
+    proxy: ProxySetup,
+    whole_plane: bool,
+    scale: float,
+    edge: float,
+    tell: Tell,
+    bsdf: dict[str, Any] | None = None,
+    emitters: dict[str, Any] | None = None,
+    on_progress: Progress = unseen,
 ) -> TracedMesh:
     """Return the surface of ``detail``: the displaced proxy, or that of solid matter."""
     if detail.mode == "volume":
@@ -181,9 +209,7 @@ def _surface(
     return surface
 
 
-def _lit(
-    detail: AnyDetail, surface: TracedMesh | Volume, lamp: Lamp, subsamples: int, background: float | Colour
-) -> Picture:
+def _lit(detail: AnyDetail, surface: TracedMesh | Volume, lamp: Lamp, subsamples: int, background: float | Colour) -> Picture:
     """Return the picture under one light and the detail's own sky, without noise."""
     parts = components(surface, lamp, subsamples=subsamples, shininess=(detail.reflectance.shininess,))
     return parts.colour(detail.reflectance, background)

@@ -43,8 +43,15 @@ def unseen(done: int, total: int) -> None:
 
 
 def place(
-    detail: Detail, proxy: ProxySetup, view: View, *, scale: float = 1.0, whole_plane: bool = False, edge: float | None = None,
-    whole_grid: bool = False, tell: Tell = quiet,
+    detail: Detail,
+    proxy: ProxySetup,
+    view: View,
+    *,
+    scale: float = 1.0,
+    whole_plane: bool = False,
+    edge: float | None = None,
+    whole_grid: bool = False,
+    tell: Tell = quiet,
 ) -> Volume:
     """Return ``proxy`` ready for ``detail``, on cells about as large as a pixel or as the memory allows; nothing is baked yet.
 
@@ -90,7 +97,11 @@ def _sentence(plan: ShellPlan, byte_count: int, coarser: float) -> str:
 
 
 def solid_surface(
-    detail: Detail, volume: Volume, *, bsdf: dict[str, Any] | None, emitters: dict[str, Any] | None = None,
+    detail: Detail,
+    volume: Volume,
+    *,
+    bsdf: dict[str, Any] | None,
+    emitters: dict[str, Any] | None = None,
     on_progress: Progress = unseen,
 ) -> VolumeSurface:
     """Return the surface of the solid ``detail`` on ``volume`` in a Mitsuba scene.

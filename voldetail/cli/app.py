@@ -52,9 +52,7 @@ def options(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and stop.")
     ] = False,
-    threads: Annotated[
-        int, typer.Option(min=0, max=MOST_THREADS, help="Processor threads for rendering; 0 for all.")
-    ] = 0,
+    threads: Annotated[int, typer.Option(min=0, max=MOST_THREADS, help="Processor threads for rendering; 0 for all.")] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print results and errors alone.")] = False,
     verbose: Annotated[bool, typer.Option("--verbose", help="Say what is decided, and how long it took.")] = False,

@@ -36,9 +36,7 @@ def size(text: str) -> tuple[int, int]:
     """Columns and rows from "640x480"."""
     match = re.fullmatch(r"\s*(\d{1,6})\s*[xX]\s*(\d{1,6})\s*", text)
     if not match:
-        raise InputError(
-            f"--size {shown(text)} is not understood; give WIDTHxHEIGHT in pixels, e.g. 640x480."
-        )
+        raise InputError(f"--size {shown(text)} is not understood; give WIDTHxHEIGHT in pixels, e.g. 640x480.")
     return int(match[1]), int(match[2])
 
 
@@ -54,9 +52,7 @@ def angles(text: str, option: str, accept: Callable[[float], bool], allowed: str
             raise InputError(f"{option} {shown(text)} is not understood; give {forms}.")
         start, stop, count = found
         if count > MOST_ANGLES:
-            raise InputError(
-                f"{option} {shown(text)} has {count:.0f} angles; at most {MOST_ANGLES} are allowed."
-            )
+            raise InputError(f"{option} {shown(text)} has {count:.0f} angles; at most {MOST_ANGLES} are allowed.")
         found = [start + (stop - start) * i / count for i in range(int(count))]
     else:
         listed = _floats(text.split(","))
@@ -80,9 +76,7 @@ def mesh(text: str, kinds: tuple[str, ...], suffixes: tuple[str, ...], option: s
             f" (or give a mesh file: {', '.join(suffixes)})."
         )
     if path.suffix.lower() not in suffixes:
-        raise InputError(
-            f"The mesh {text} has the suffix {path.suffix or 'none'}; use one of {', '.join(suffixes)}."
-        )
+        raise InputError(f"The mesh {text} has the suffix {path.suffix or 'none'}; use one of {', '.join(suffixes)}.")
     return str(readable(path, "mesh", MESH_BYTES))
 
 

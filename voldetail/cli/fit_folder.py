@@ -38,9 +38,7 @@ class FitFolder:
         """Raise InputError unless the folder may be written and holds no results that may not be replaced."""
         check_folder(self.path)
         if resume and not self.path.is_dir():
-            raise InputError(
-                f"There is nothing to go on with: {self.path} does not exist; leave --resume out."
-            )
+            raise InputError(f"There is nothing to go on with: {self.path} does not exist; leave --resume out.")
         held = [name for name in (*RESULTS, STATE) if (self.path / name).exists()]
         if held and not force and not (resume and STATE in held):
             raise InputError(
@@ -77,11 +75,7 @@ class FitFolder:
         from voldetail.image import save_png
 
         now = time.monotonic()
-        if (
-            progress.picture is None
-            or progress.picture is self.shown
-            or now - self.shown_at < PREVIEW_SECONDS
-        ):
+        if progress.picture is None or progress.picture is self.shown or now - self.shown_at < PREVIEW_SECONDS:
             return
         self.shown, self.shown_at = progress.picture, now
         save_png(self.path / PREVIEW, progress.picture)

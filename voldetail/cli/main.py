@@ -67,11 +67,7 @@ def _judge(error: BaseException) -> tuple[int, str]:
     if isinstance(error, OSError):
         reason = error.strerror or str(error) or type(error).__name__
         where = f" ({error.filename})" if error.filename else ""
-        hint = (
-            "free some space"
-            if error.errno in (errno.ENOSPC, errno.EDQUOT)
-            else "check the path and its permissions"
-        )
+        hint = "free some space" if error.errno in (errno.ENOSPC, errno.EDQUOT) else "check the path and its permissions"
         return BAD_INPUT, f"{reason}{where}; {hint} and try again."
     if isinstance(error, MemoryError):
         return BAD_INPUT, "There is not enough memory; use a smaller --size, --resolution or mesh."

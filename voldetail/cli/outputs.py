@@ -39,9 +39,7 @@ def make_folder(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(
-            f"Cannot make the folder {path}: {error.strerror or error}; give another with -o."
-        ) from error
+        raise InputError(f"Cannot make the folder {path}: {error.strerror or error}; give another with -o.") from error
 
 
 def remove(paths: list[Path]) -> None:
@@ -50,9 +48,7 @@ def remove(paths: list[Path]) -> None:
         try:
             path.unlink(missing_ok=True)
         except OSError as error:
-            raise InputError(
-                f"Cannot replace {path}: {error.strerror or error}; give another folder."
-            ) from error
+            raise InputError(f"Cannot replace {path}: {error.strerror or error}; give another folder.") from error
 
 
 def _check_place(place: Path, wanted: Path) -> None:
@@ -64,6 +60,4 @@ def _check_place(place: Path, wanted: Path) -> None:
         return
     # Some network file systems do not tell, and say 0 of 0.
     if usage.total > 0 and usage.free < LEAST_FREE:
-        raise InputError(
-            f"Cannot write {wanted}: {usage.free / 2**20:.0f} MB are free there; free some space."
-        )
+        raise InputError(f"Cannot write {wanted}: {usage.free / 2**20:.0f} MB are free there; free some space.")

@@ -28,9 +28,7 @@ class ProgressView:
 
     def __init__(self, console: Console, clock: Callable[[], float] = time.monotonic) -> None:
         self.console, self.clock = console, clock
-        self.live = (
-            Live(console=console, transient=True, refresh_per_second=4) if console.is_terminal else None
-        )
+        self.live = Live(console=console, transient=True, refresh_per_second=4) if console.is_terminal else None
         self.last_line = -math.inf
         self.last_stage = ""
 
@@ -40,9 +38,7 @@ class ProgressView:
             self.live.update(Text("reading the photo and preparing the scene ..."))
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         if self.live:
             self.live.stop()
 

@@ -21,9 +21,7 @@ Fov = Annotated[
 ]
 Background = Annotated[
     str,
-    typer.Option(
-        help="Light where there is nothing: 0 is black; a number, R,G,B (linear), or photo: what the fit found there."
-    ),
+    typer.Option(help="Light where there is nothing: 0 is black; a number, R,G,B (linear), or photo: what the fit found there."),
 ]
 Subsamples = Annotated[int, typer.Option(min=1, max=8, help="Samples a pixel, each way, under a light.")]
 

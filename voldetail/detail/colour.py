@@ -80,7 +80,9 @@ class ColourTexture(Record):
         default="srgb", description="The encoding of the colours that the channels add up to."
     )
     axes: tuple[Finite, ...] = Field(
-        default=(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), min_length=9, max_length=9,
+        default=(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+        min_length=9,
+        max_length=9,
         description="The direction of each channel in colour space, three numbers a channel: a rotation.",
     )
     channels: tuple[ColourChannel, ColourChannel, ColourChannel] = Field(description="The channels, the most varied first.")

@@ -94,9 +94,7 @@ def field_of(declaration: Parameter) -> Any:
     extra: dict[str, JsonValue] = {
         "unit": declaration.unit or "none", "symbol": declaration.symbol, "allowed": declaration.allowed,
     }  # fmt: skip
-    field: FieldInfo = Field(
-        default=declaration.default, description=declaration.sentence, json_schema_extra=extra, **constraint
-    )
+    field: FieldInfo = Field(default=declaration.default, description=declaration.sentence, json_schema_extra=extra, **constraint)
     field.metadata.append(declaration)
     return field
 

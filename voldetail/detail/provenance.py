@@ -23,9 +23,7 @@ class Provenance(Record):
     created: str = Field(description="When it was made, an ISO 8601 date or date and time.")
     photo: str = Field(description="The file name of the photo, without its folder.")
     photo_sha256: Sha256 | None = Field(default=None, description="The SHA-256 of the photo file.")
-    mask_sha256: Sha256 | None = Field(
-        default=None, description="The SHA-256 of the mask file, if there was one."
-    )
+    mask_sha256: Sha256 | None = Field(default=None, description="The SHA-256 of the mask file, if there was one.")
     zone: tuple[int, int, int, int] | None = Field(
         default=None,
         description="The part of the photo used: x, y, width, height in pixels; null for all of it.",
@@ -38,9 +36,7 @@ class Provenance(Record):
     metric: str = Field(description="The metric that was minimised.")
     evaluations: int = Field(ge=0, description="How many pictures were rendered and compared.")
     seconds: float = Field(ge=0, description="How long the fit took, in seconds.")
-    distance: float = Field(
-        ge=0, description="The metric M between photo and rendering at the end of the fit."
-    )
+    distance: float = Field(ge=0, description="The metric M between photo and rendering at the end of the fit.")
     mitsuba: str = Field(description="The version of Mitsuba.")
     drjit: str = Field(description="The version of Dr.Jit.")
     numpy: str = Field(description="The version of NumPy.")

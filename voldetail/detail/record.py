@@ -40,15 +40,11 @@ class Detail(Record):
     seed: int = Field(default=0, ge=0, le=LARGEST_SEED, description="The seed of the feature points.")
     noise: NoiseParameters = Field(default_factory=NoiseParameters, description="The noise.")
     relief: ReliefParameters = Field(default_factory=ReliefParameters, description="The displacement.")
-    reflectance: Reflectance = Field(
-        default_factory=Reflectance, description="How the surface reflects light."
-    )
+    reflectance: Reflectance = Field(default_factory=Reflectance, description="How the surface reflects light.")
     medium: MediumParameters | None = Field(
         default=None, description="Of a volume that light passes through; without it a volume is solid."
     )
-    colour: DetailColour | None = Field(
-        default=None, description="The colour of the surface, where it is more than one tint."
-    )
+    colour: DetailColour | None = Field(default=None, description="The colour of the surface, where it is more than one tint.")
     provenance: Provenance | None = Field(default=None, description="Where the detail came from.")
     noise_floor: NoiseFloor = Field(default_factory=NoiseFloor, description="Distances that chance alone gives.")
 

@@ -9,15 +9,15 @@ from voldetail.detail.declaration import Parameter
 from voldetail.detail.parameters import PARAMETERS, parameters_of
 from voldetail.detail.record import Detail, values_of
 
-_GLOSSY = (
-    0.05  # Ks above which a highlight is worth mentioning: 5 % of the beam, about a dielectric's reflectance
-)
+_GLOSSY = 0.05  # Ks above which a highlight is worth mentioning: 5 % of the beam, about a dielectric's reflectance
 _ANGULAR = 0.5  # facets above which the flat faces are what one sees
 MEDIUM_HAS_NONE = ("specular", "shininess", *(p.name for p in parameters_of("pigment")))
 """Numbers of the reflectance that a medium has no use for."""
 
 _COLOURED = {
-    "noise": "coloured by example", "height": "coloured with its height", "hollow": "coloured with its hollows",
+    "noise": "coloured by example",
+    "height": "coloured with its height",
+    "hollow": "coloured with its hollows",
     "cell": "coloured by the cell",
 }
 _STRETCHED = 1.1  # a ratio below this cannot be told from round cells by eye

@@ -31,8 +31,15 @@ def patterned(detail: AnyDetail) -> bool:
 
 
 def coloured(
-    detail: Detail, factor: Factor, points: tuple[Any, ...], relief: Any, number: Any | None, *,
-    scale: float, spacing: float, normals: tuple[Any, ...] | None,
+    detail: Detail,
+    factor: Factor,
+    points: tuple[Any, ...],
+    relief: Any,
+    number: Any | None,
+    *,
+    scale: float,
+    spacing: float,
+    normals: tuple[Any, ...] | None,
 ) -> Factor:
     """Return ``factor`` times the colour of ``detail`` at ``points``: three arrays, so that no albedo is over 1.
 
@@ -50,7 +57,10 @@ def coloured(
         first = 1.0 - first if colour.driver == "hollow" else first
     texels = dr.opaque(float_type, colour.texels_per_unit / scale)
     found = colour_at(
-        colour.source, tuple(v * texels for v in points), footprint=colour.texels_per_unit / scale * spacing, first=first,
+        colour.source,
+        tuple(v * texels for v in points),
+        footprint=colour.texels_per_unit / scale * spacing,
+        first=first,
         normals=normals,
     )
     out = []

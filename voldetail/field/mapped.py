@@ -90,9 +90,7 @@ class MapField:
         rows = [self._index(upper + k, self.rows, mirror) for k in (0, 1)]
         out = []
         for values in maps:
-            a, b, c_, d = (
-                dr.gather(self.float_type, values, i * self.columns + j, active) for i in rows for j in columns
-            )
+            a, b, c_, d = (dr.gather(self.float_type, values, i * self.columns + j, active) for i in rows for j in columns)
             out.append(dr.lerp(dr.lerp(a, b, fx), dr.lerp(c_, d, fx), fy))
         return out
 
@@ -114,9 +112,7 @@ class MapField:
             low, high = (dr.gather(self.float_type, self.quantiles, index + (channel * QUANTILES + k)) for k in (0, 1))
             found.append(dr.lerp(low, high, along - self.float_type(index)))
         axes, mean = self.scores.axes, self.scores.mean
-        colour = [
-            dr.clip(sum(float(axes[k, c]) * found[1 + c] for c in range(3)) + float(mean[k]), 0.0, 1.0) for k in range(3)
-        ]
+        colour = [dr.clip(sum(float(axes[k, c]) * found[1 + c] for c in range(3)) + float(mean[k]), 0.0, 1.0) for k in range(3)]
         return [found[0], *colour]
 
 

@@ -34,8 +34,14 @@ def settings_of(detail: Detail) -> NoiseSettings:
     noise = detail.noise
     dims = 3 if noise.domain == SOLID else 2
     return NoiseSettings.from_ranks(
-        dims, noise.first_neighbour, noise.last_neighbour, noise.octaves, noise.envelope == "gaussian",
-        noise.weights, noise.joining == "highest", noise.has_plates,
+        dims,
+        noise.first_neighbour,
+        noise.last_neighbour,
+        noise.octaves,
+        noise.envelope == "gaussian",
+        noise.weights,
+        noise.joining == "highest",
+        noise.has_plates,
     )
 
 
@@ -57,7 +63,11 @@ def relief_quantiles(detail: Detail, side: float, shares: Sequence[float]) -> tu
 
 
 def relief_and_albedo(
-    detail: AnyDetail, domain: tuple[Any, ...], scale: float = 1.0, *, spacing: float = 0.0,
+    detail: AnyDetail,
+    domain: tuple[Any, ...],
+    scale: float = 1.0,
+    *,
+    spacing: float = 0.0,
     normals: tuple[Any, ...] | None = None,
 ) -> tuple[Any, Any | None]:
     """Return `relief_at` and the factor on the albedo (field.albedo): None for 1, an array, or three for colour.
@@ -99,8 +109,14 @@ def _relief(detail: Detail, domain: tuple[Any, ...], scale: float) -> tuple[Any,
         plates = PlateShape.of(noise, lambda value: _opaque(float_type, value))
     octaves = {name: _opaque(float_type, getattr(noise, name)) for name in OCTAVE_NUMBERS}
     return relief_function(
-        _points(detail, domain), settings_of(detail), _seed(detail, float_type), **_cells(detail, float_type, scale),
-        **octaves, curve=float_type(list(noise.curve)), shape=shape, plates=plates,
+        _points(detail, domain),
+        settings_of(detail),
+        _seed(detail, float_type),
+        **_cells(detail, float_type, scale),
+        **octaves,
+        curve=float_type(list(noise.curve)),
+        shape=shape,
+        plates=plates,
     )
 
 

@@ -111,9 +111,7 @@ class Shell:
         """Return the numbers of the cubes, TILE at a time, not yet evaluated."""
         uint_type: Any = mitsuba().UInt32
         count = self.plan.cells
-        return [
-            dr.arange(uint_type, min(TILE, count - start)) + dr.opaque(uint_type, start) for start in range(0, count, TILE)
-        ]
+        return [dr.arange(uint_type, min(TILE, count - start)) + dr.opaque(uint_type, start) for start in range(0, count, TILE)]
 
     def density_at(self, points: Points) -> Any:
         """Return d at ``points`` of the scene."""

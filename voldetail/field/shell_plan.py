@@ -58,8 +58,14 @@ class OverBudgetError(InputError):
 
 
 def plan_shell(
-    proxy: ProxySetup, edge: float, thickness: float, amplitude: float = 0.0, budget: int | None = None, tiles: bool = False,
-    *, solid: bool = True,
+    proxy: ProxySetup,
+    edge: float,
+    thickness: float,
+    amplitude: float = 0.0,
+    budget: int | None = None,
+    tiles: bool = False,
+    *,
+    solid: bool = True,
 ) -> ShellPlan:
     """Return the grid of cubes of ``edge`` about ``proxy`` with a shell of ``thickness`` and room to shift by ``amplitude``.
 

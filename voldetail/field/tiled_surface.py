@@ -50,8 +50,11 @@ class Piece:
 
 
 def tiled_isosurface(
-    hypertexture: Hypertexture, level: float | None = None, on_progress: Callable[[int, int], None] | None = None,
-    least_island: float = LEAST_ISLAND, budget: int = DEFAULT_BUDGET,
+    hypertexture: Hypertexture,
+    level: float | None = None,
+    on_progress: Callable[[int, int], None] | None = None,
+    least_island: float = LEAST_ISLAND,
+    budget: int = DEFAULT_BUDGET,
 ) -> Isosurface:
     """Return where ``hypertexture`` has the density ``level`` (its own where none is given) on the grid of its plan.
 
@@ -83,9 +86,7 @@ def tiled_isosurface(
     return _joined(hypertexture, pieces, least_island)
 
 
-def _baked(
-    hypertexture: Hypertexture, blocks: NDArray[np.int64]
-) -> Iterator[tuple[Grid, Hypertexture, NDArray[np.float32]]]:
+def _baked(hypertexture: Hypertexture, blocks: NDArray[np.int64]) -> Iterator[tuple[Grid, Hypertexture, NDArray[np.float32]]]:
     """Yield each block's first middle (z, y, x), the hypertexture with the distances about it, and its densities."""
     shell, count = hypertexture.shell, SIDE + 1
     numbers: list[Grid] = [(z, y, x) for z, y, x in blocks.tolist()]
@@ -123,7 +124,14 @@ def _piece(texture: Hypertexture, first: Grid, density: NDArray[np.float32], lev
     if balance[found.sides > 1].any() or open_sides.min(initial=0) < 0:
         raise VoldetailError("The surface has a hole within a block of the grid, which is an error of this program.")
     return Piece(
-        first, steps.astype(np.float32), normals.astype(np.float32), faces.astype(np.uint32), part, volumes, seam, names[seam],
+        first,
+        steps.astype(np.float32),
+        normals.astype(np.float32),
+        faces.astype(np.uint32),
+        part,
+        volumes,
+        seam,
+        names[seam],
         open_sides,
     )
 
@@ -186,9 +194,7 @@ def _joined(hypertexture: Hypertexture, pieces: list[Piece], least: float) -> Is
     return Isosurface(vertices, faces, normals, dropped)
 
 
-def _kept_parts(
-    pieces: list[Piece], where: NDArray[np.int64], names: int, least: float
-) -> tuple[list[NDArray[np.bool_]], int]:
+def _kept_parts(pieces: list[Piece], where: NDArray[np.int64], names: int, least: float) -> tuple[list[NDArray[np.bool_]], int]:
     """Return which parts of each piece belong to a body that is large enough, and how many bodies do not."""
     counts = [len(piece.volumes) for piece in pieces]
     starts = np.cumsum([0, *counts])

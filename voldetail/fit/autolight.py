@@ -23,9 +23,7 @@ def resolve_light(setup: Setup, photo: Photo) -> tuple[Setup, LightGuess | None]
         return setup, None
     if not setup.proxy.row.flat or any(setup.proxy.rotation) or setup.medium:
         other = "what is seen is a medium" if setup.medium else "the proxy is another"
-        raise InputError(
-            f"The light auto is for a plane that faces the camera, and {other}: give --light as {FORMS_GIVEN}."
-        )
+        raise InputError(f"The light auto is for a plane that faces the camera, and {other}: give --light as {FORMS_GIVEN}.")
     rows, columns = photo.pixels.shape[:2]
     mask = mask_of(setup, photo)
     # Without a zone the whole photo counts: more bumps tell more.

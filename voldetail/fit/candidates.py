@@ -32,9 +32,14 @@ class Candidate:
 
 
 CHARACTERS = (
-    (False, "none", False, False, False), (True, "none", False, False, False), (False, "ridge", False, False, False),
-    (False, "billow", False, False, False), (False, "none", True, False, False), (True, "none", True, False, False),
-    (False, "none", False, True, False), (False, "none", True, False, True),
+    (False, "none", False, False, False),
+    (True, "none", False, False, False),
+    (False, "ridge", False, False, False),
+    (False, "billow", False, False, False),
+    (False, "none", True, False, False),
+    (True, "none", True, False, False),
+    (False, "none", False, True, False),
+    (False, "none", True, False, True),
 )
 """Stripes, fold of H, borders, stones and plates that go together; each is a relief of its own sort, and their products only
 multiply choices. The first two are GD10's."""
@@ -44,9 +49,7 @@ DIMENSIONS = 14
 """Of the sequence: a number of the noise names the one that it takes (`Parameter.cover`), which families without it may share."""
 
 
-def sampled(
-    space: Space, count: int, seed: int, anisotropy: tuple[float, float], extended: bool = True
-) -> list[Candidate]:
+def sampled(space: Space, count: int, seed: int, anisotropy: tuple[float, float], extended: bool = True) -> list[Candidate]:
     """Return ``count`` candidates that cover choices and numbers evenly (a scrambled Sobol sequence).
 
     ``anisotropy`` is (factor, angle) of the photo's own spectrum; half of the candidates start from it and half from
@@ -56,7 +59,8 @@ def sampled(
     families = [
         (ranks, character)
         for ranks, character in itertools.product(PAPER_NEIGHBOURS, CHARACTERS if extended else CHARACTERS[:2])
-        if not (character[2] and ranks != (1, 2)) and not (character[3] and ranks != (1, 50))
+        if not (character[2] and ranks != (1, 2))
+        and not (character[3] and ranks != (1, 50))
         and not (space.medium and any(character[2:]))  # a cloud has no stones, no plates and no paving
     ]
     generator = qmc.Sobol(d=DIMENSIONS, scramble=True, seed=np.random.default_rng(seed))
@@ -67,8 +71,16 @@ def sampled(
         fewest, most = MEDIUM_OCTAVES if space.medium else OCTAVES
         octaves = fewest + int(point[9] * (most - fewest + 1))
         kind = Kind(
-            first, last, "gaussian" if point[8] < 0.5 else "exponential", octaves, striped, fold, bordered,
-            extended and space.pigmented and point[10] < 0.5, stones, plates,
+            first,
+            last,
+            "gaussian" if point[8] < 0.5 else "exponential",
+            octaves,
+            striped,
+            fold,
+            bordered,
+            extended and space.pigmented and point[10] < 0.5,
+            stones,
+            plates,
         )
         # Half of them as stretched as the photo, half round.
         turned = (index // len(families)) % 2 == 0
@@ -84,10 +96,14 @@ def _numbers_at(space: Space, point: NDArray[np.float64], anisotropy: tuple[floa
     values = {
         "noise.scale": low * (high / low) ** float(point[0]),
         "roughness": rough_low * (rough_high / rough_low) ** float(point[1]),
-        "noise.anisotropy": 1.0 / anisotropy[0] if anisotropy else 1.0, "stone_stretch": 1.0,
+        "noise.anisotropy": 1.0 / anisotropy[0] if anisotropy else 1.0,
+        "stone_stretch": 1.0,
         "noise.angle": anisotropy[1] if anisotropy else math.pi * float(point[2]),
-        "stone_height": 0.5 + 0.6 * float(point[1]), "noise.gain": 1.0, "plate_gain": 0.1 + 0.4 * float(point[9]),
-        "plate_dust": 0.15 * float(point[6]), "stone_gain": 0.05 * 8.0 ** float(point[9]),
+        "stone_height": 0.5 + 0.6 * float(point[1]),
+        "noise.gain": 1.0,
+        "plate_gain": 0.1 + 0.4 * float(point[9]),
+        "plate_dust": 0.15 * float(point[6]),
+        "stone_gain": 0.05 * 8.0 ** float(point[9]),
         "reflectance.speckle_scale": space.finest * 0.5 ** float(point[12]),
         "noise.stripe_spread": math.pi * (1.0 if point[6] < 0.5 else float(point[7])),
     } | {p.key: p.cover.at(float(point[p.cover.dimension])) for p in PARAMETERS if p.cover is not None}
@@ -114,16 +130,25 @@ def paper_grid(space: Space, anisotropy: tuple[float, float]) -> list[Candidate]
     low, high = space.scale
     out = []
     for (first, last), phi, m, n, curve, step, rough in itertools.product(
-        PAPER_NEIGHBOURS, PAPER_FREQUENCIES, PAPER_LACUNARITIES, PAPER_OCTAVES, MONOTONE_CURVES,
-        range(PAPER_SCALES), PAPER_ROUGHNESS if space.amplitude is None else (0.0,),
+        PAPER_NEIGHBOURS,
+        PAPER_FREQUENCIES,
+        PAPER_LACUNARITIES,
+        PAPER_OCTAVES,
+        MONOTONE_CURVES,
+        range(PAPER_SCALES),
+        PAPER_ROUGHNESS if space.amplitude is None else (0.0,),
     ):
         if n == 1 and m != PAPER_LACUNARITIES[0]:
             continue  # with one harmonic m has no effect
         kind = Kind(first, last, "exponential", n, phi > 0)
         values = {
-            "noise.scale": low * (high / low) ** ((step + 0.5) / PAPER_SCALES), "roughness": max(rough, 1e-3),
-            "noise.anisotropy": 1.0 / factor, "noise.angle": angle, "noise.lacunarity": m,
-            "noise.stripe_frequency": phi, "noise.stripe_spread": math.pi,
+            "noise.scale": low * (high / low) ** ((step + 0.5) / PAPER_SCALES),
+            "roughness": max(rough, 1e-3),
+            "noise.anisotropy": 1.0 / factor,
+            "noise.angle": angle,
+            "noise.lacunarity": m,
+            "noise.stripe_frequency": phi,
+            "noise.stripe_spread": math.pi,
         } | {f"shape.{i}": float(v) for i, v in enumerate(shape_of(START_CURVES[curve]))}
         out.append(Candidate(kind, space.encode(kind, values)))
     return out

@@ -25,7 +25,10 @@ from voldetail.results.colour import ColourChoice
 from voldetail.texture import CURVE_PROBABILITIES, analyse, picture
 
 DRIVERS: dict[str, tuple[str, ...]] = {
-    "none": (), "by-example": ("noise",), "height": ("height", "hollow"), "cell": ("cell",),
+    "none": (),
+    "by-example": ("noise",),
+    "height": ("height", "hollow"),
+    "cell": ("cell",),
     "auto": ("noise", "height", "hollow", "cell"),
 }
 """What may move the most varied channel, by the choice of the user."""
@@ -69,15 +72,17 @@ class ColourDistance:
     def __call__(self, pixels: NDArray[np.float32], mask: NDArray[np.bool_] | None = None) -> float:
         """Return the distance of a picture (H, W, 3), of which ``mask`` may be compared."""
         used = self._mask if mask is None else mask
-        found: list[Descriptor] = [
-            describe(c, used, like=own) for c, own in zip(self._channels(pixels), self._own, strict=True)
-        ]
+        found: list[Descriptor] = [describe(c, used, like=own) for c, own in zip(self._channels(pixels), self._own, strict=True)]
         parts = [distance(own, other) for own, other in zip(self._own, found, strict=True)]
         return float(np.dot(self._weights, parts))
 
 
 def choose_colour(
-    objective: Objective, detail: Detail, colour: str, seeds: Sequence[int], shading_seeds: Sequence[int],
+    objective: Objective,
+    detail: Detail,
+    colour: str,
+    seeds: Sequence[int],
+    shading_seeds: Sequence[int],
     name: str = "texture",
 ) -> ColourChoice:
     """Return ``detail`` with the colour that was asked for, the nearest to the photo where there are several.

@@ -48,9 +48,7 @@ def warning(value: float | None) -> str:
     )
 
 
-def evened(
-    source: NDArray[np.float32], mask: NDArray[np.bool_], shape: tuple[int, int], seed: int
-) -> NDArray[np.float32]:
+def evened(source: NDArray[np.float32], mask: NDArray[np.bool_], shape: tuple[int, int], seed: int) -> NDArray[np.float32]:
     """Return a picture of ``shape`` made of ``source`` (H, W, 3) inside its mask that is alike everywhere.
 
     A toroidal tile, as large as the shorter sides allow, repeated as far as ``shape`` needs. Raises InputError for a source

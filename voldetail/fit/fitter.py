@@ -22,7 +22,7 @@ from voldetail.fit.reflectance import colours
 from voldetail.fit.resolvable import space_of
 from voldetail.fit.session import Progress, Session, State, Stopped, derived_seed
 from voldetail.fit.target import load_photo_of, make_target, reduced
-from voldetail.fit.warmstart.choose import starts_from
+from voldetail.fit.warmstart.choose import starts_from, takes_starts
 from voldetail.fit.warmstart.start import Start
 from voldetail.image import Photo
 from voldetail.library.building.build import BuildProgress
@@ -38,16 +38,17 @@ COLOUR_SEEDS = 3
 INTERVAL_SEEDS = 2
 """Noise seeds for the intervals of numbers."""
 
-FEWEST_FOR_LIBRARY = 500
-"""Evaluations below which a library is not made for a fit: that takes longer than the fit."""
-
 FINALISTS = 3
 DETAIL_SEEDS = 4
 """Seeds tried for the finished detail: one noise field of a few hundred cells can by chance be an odd one."""
 
 
 def fit(
-    setup: Setup, *, photo: Photo | None = None, start: State | None = None, light_guess: LightGuess | None = None,
+    setup: Setup,
+    *,
+    photo: Photo | None = None,
+    start: State | None = None,
+    light_guess: LightGuess | None = None,
     on_progress: Callable[[Progress], None] = lambda progress: None,
     on_state: Callable[[State], None] = lambda state: None,
     on_target: Callable[[Target], None] = lambda target: None,
@@ -84,10 +85,21 @@ def fit(
         final = replace(final, detail=colour.detail)
     return FitResult(
         detail=signed(final, setup, target, session, Findings(status, light_guess, heights, identifiability, background, colour)),
-        setup=setup, target=target,
-        picture=final.picture, covered=final.covered, background=background, distance=final.distance,
-        evaluations=session.evaluations, seconds=session.seconds, status=status, trace=tuple(session.trace),
-        interrupted=interrupted, light_guess=light_guess, heights=heights, identifiability=identifiability, colour=colour,
+        setup=setup,
+        target=target,
+        picture=final.picture,
+        covered=final.covered,
+        background=background,
+        distance=final.distance,
+        evaluations=session.evaluations,
+        seconds=session.seconds,
+        status=status,
+        trace=tuple(session.trace),
+        interrupted=interrupted,
+        light_guess=light_guess,
+        heights=heights,
+        identifiability=identifiability,
+        colour=colour,
     )
 
 
@@ -114,17 +126,13 @@ def _search(session: Session, stages: Sequence[Stage]) -> tuple[str, bool]:
     return status, interrupted
 
 
-def takes_starts(setup: Setup) -> bool:
-    """Whether a fit of ``setup`` is told where to start: the default one of a relief, unless it is to be a short one."""
-    settings = setup.fit
-    usual = setup.mode == "displacement" and settings.solver == "default" and settings.metric == "combined"
-    short = settings.library == "auto" and settings.evaluations is not None and settings.evaluations < FEWEST_FOR_LIBRARY
-    return usual and not short and settings.library != "none"
-
-
 def _session(
-    setup: Setup, target: Target, start: State | None, starts: Sequence[Start],
-    on_progress: Callable[[Progress], None], on_state: Callable[[State], None],
+    setup: Setup,
+    target: Target,
+    start: State | None,
+    starts: Sequence[Start],
+    on_progress: Callable[[Progress], None],
+    on_state: Callable[[State], None],
 ) -> tuple[Session, tuple[Stage, ...]]:
     space = space_of(setup, target)
     stretched = anisotropy(target.luminance, target.mask)
@@ -135,14 +143,26 @@ def _session(
     coarse = _coarse(setup, target)
     both = setup.fit.solver != "paper" and coarse.target is not target
     fine = Objective(
-        target, build(setup, target.shape, target.zone), specular=setup.fit.specular,
+        target,
+        build(setup, target.shape, target.zone),
+        specular=setup.fit.specular,
         reduced=coarse.target if both else None,
     )
     # The budget that the user named is a limit; the plan's own is an estimate with room for rounding.
     planned = setup.fit.evaluations or plan.evaluations
     session = Session(
-        coarse, fine, space, setup.seed, planned, setup.fit.seeds, setup.fit.time_limit,
-        on_progress, on_state, start, stages=len(plan.stages), started=bool(starts),
+        coarse,
+        fine,
+        space,
+        setup.seed,
+        planned,
+        setup.fit.seeds,
+        setup.fit.time_limit,
+        on_progress,
+        on_state,
+        start,
+        stages=len(plan.stages),
+        started=bool(starts),
     )
     return session, plan.stages
 
@@ -167,9 +187,7 @@ def _finish(session: Session) -> Evaluation:
     A plan that was cut short leaves candidates compared at half resolution; the best few are compared once more.
     """
     finite = [c for c in session.pool if np.isfinite(c.value)] or session.pool
-    details = [
-        rounded(session.space.decode(c.kind, c.vector)) for c in sorted(finite, key=lambda c: c.value)[:FINALISTS]
-    ]
+    details = [rounded(session.space.decode(c.kind, c.vector)) for c in sorted(finite, key=lambda c: c.value)[:FINALISTS]]
     if session.stage < session.stages:
         details.sort(key=lambda d: session.fine.evaluate(d, session.unseen_seed(0)).score)
     seeds = (derived_seed(session.root_seed, f"detail/{index}") for index in range(DETAIL_SEEDS))
@@ -214,8 +232,9 @@ def _colour(setup: Setup, session: Session, final: Evaluation) -> ColourChoice |
     """Return the colour that the user asked for, None where nobody would wait for it."""
     if setup.colour == "none" or final.detail.medium is not None:
         return None
-    judges, shading = ([derived_seed(session.root_seed, f"{name}/{index}") for index in range(COLOUR_SEEDS)]
-                       for name in ("colour", "shading"))
+    judges, shading = (
+        [derived_seed(session.root_seed, f"{name}/{index}") for index in range(COLOUR_SEEDS)] for name in ("colour", "shading")
+    )
     try:
         return choose_colour(session.fine, final.detail, setup.colour, judges, shading, setup.photo.name[:200])
     except KeyboardInterrupt:

@@ -47,8 +47,13 @@ def amplitude_interval(objective: Objective, detail: Detail, seeds: Sequence[int
     # The fitted one belongs to it whatever other seeds say: a short search may end beside the lowest.
     low, high = min(low, detail.relief.amplitude), max(high, detail.relief.amplitude)
     return AmplitudeInterval(
-        low, high, min(low, *(end[0] for end in ends_any)), max(high, *(end[1] for end in ends_any)),
-        tuple(amplitudes.tolist()), tuple(given.tolist()), tuple(means.min(axis=0).tolist()),
+        low,
+        high,
+        min(low, *(end[0] for end in ends_any)),
+        max(high, *(end[1] for end in ends_any)),
+        tuple(amplitudes.tolist()),
+        tuple(given.tolist()),
+        tuple(means.min(axis=0).tolist()),
     )
 
 
@@ -65,14 +70,15 @@ def _lamps(lamp: Lamp) -> Iterator[Lamp]:
 def _under(objective: Objective, lamp: Lamp) -> Objective:
     # A new one for the given light too: these pictures are no part of the search's evaluations.
     return Objective(
-        replace(objective.target, lamp=lamp), objective.surface, specular=objective.specular,
-        subsamples=objective.subsamples, reduced=objective.reduced,
+        replace(objective.target, lamp=lamp),
+        objective.surface,
+        specular=objective.specular,
+        subsamples=objective.subsamples,
+        reduced=objective.reduced,
     )
 
 
-def _scores(
-    objective: Objective, detail: Detail, factors: Sequence[float], seeds: Sequence[int]
-) -> NDArray[np.float64]:
+def _scores(objective: Objective, detail: Detail, factors: Sequence[float], seeds: Sequence[int]) -> NDArray[np.float64]:
     """Scores (factors, seeds)."""
     amplitude = detail.relief.amplitude
     higher = [

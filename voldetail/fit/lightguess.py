@@ -128,9 +128,7 @@ def moments_of(luminance: NDArray[np.floating], mask: NDArray[np.bool_] | None =
     return Moments(tensor, extremes, third, cells, turn)
 
 
-def _reduced(
-    luminance: NDArray[np.floating], mask: NDArray[np.bool_] | None
-) -> tuple[Picture, NDArray[np.bool_]]:
+def _reduced(luminance: NDArray[np.floating], mask: NDArray[np.bool_] | None) -> tuple[Picture, NDArray[np.bool_]]:
     """The picture and its mask at ANALYSED pixels at most."""
     light = np.asarray(luminance, np.float64)
     use = np.ones(light.shape, bool) if mask is None else np.asarray(mask, bool)
@@ -150,9 +148,7 @@ def _blurred(light: Picture, use: NDArray[np.bool_], sigma: float) -> Picture:
     return np.asarray(blurred / np.maximum(weight, 1e-9))
 
 
-def _at(
-    light: Picture, use: NDArray[np.bool_], level: Picture, blur: float
-) -> tuple[Picture, Picture, Picture] | None:
+def _at(light: Picture, use: NDArray[np.bool_], level: Picture, blur: float) -> tuple[Picture, Picture, Picture] | None:
     """Tensor, extremes and third moments at one blur, in pixels; ``level`` is the slow shading."""
     smooth = _blurred(light, use, blur)
     # The square root is near enough to how pictures are encoded, and keeps highlights from ruling the moments.

@@ -55,7 +55,12 @@ class Objective:
     """
 
     def __init__(
-        self, target: Target, surface: HeightField | MeshSurface | Volume, *, specular: bool, subsamples: int = 2,
+        self,
+        target: Target,
+        surface: HeightField | MeshSurface | Volume,
+        *,
+        specular: bool,
+        subsamples: int = 2,
         reduced: Target | None = None,
     ) -> None:
         self.target, self.surface = target, surface
@@ -106,8 +111,11 @@ class Objective:
             update={
                 "reflectance": detail.reflectance.model_copy(
                     update={
-                        "ambient": coefficients.ambient, "diffuse": coefficients.diffuse, "specular": coefficients.specular,
-                        "shininess": coefficients.shininess, "tint": self.target.tint,
+                        "ambient": coefficients.ambient,
+                        "diffuse": coefficients.diffuse,
+                        "specular": coefficients.specular,
+                        "shininess": coefficients.shininess,
+                        "tint": self.target.tint,
                     }
                 )
             }

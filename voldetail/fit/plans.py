@@ -69,9 +69,7 @@ WORTH_A_SEARCH = 1.4
 UNSEEN_SEEDS = 3
 
 
-def default_plan(
-    space: Space, anisotropy: Anisotropy, evaluations: int | None, starts: Sequence[Start] = ()
-) -> Plan:
+def default_plan(space: Space, anisotropy: Anisotropy, evaluations: int | None, starts: Sequence[Start] = ()) -> Plan:
     """Return our plan: cover the space at half resolution, or compare ``starts``, then CMA-ES from ever fewer candidates.
 
     ``evaluations`` scales every stage; None means the tuned numbers.
@@ -176,9 +174,7 @@ def _refine_pool(session: Session, budget: int, *, fine: bool) -> None:
         _refine_one(session, index, budget, fine=fine)
 
 
-def _refine_one(
-    session: Session, index: int, budget: int, *, fine: bool, solver: GradientDescent | None = None
-) -> None:
+def _refine_one(session: Session, index: int, budget: int, *, fine: bool, solver: GradientDescent | None = None) -> None:
     objective = session.fine if fine else session.coarse
 
     def keep(candidate: Candidate) -> None:

@@ -32,20 +32,29 @@ class Findings:
     colour: ColourChoice | None = None
 
 
-def signed(
-    final: Evaluation, setup: Setup, target: Target, session: Session, findings: Findings
-) -> Detail:
+def signed(final: Evaluation, setup: Setup, target: Target, session: Session, findings: Findings) -> Detail:
     """Return the detail with its noise floor and provenance."""
     other = session.fine.evaluate(final.detail, derived_seed(session.root_seed, "floor"))
     floor = _floor(final, other, setup.fit.metric)
     version = importlib.metadata.version
     provenance = Provenance(
-        voldetail=__version__, created=datetime.now(UTC).isoformat(timespec="seconds"), photo=setup.photo.name,
-        photo_sha256=target.photo.sha256, mask_sha256=sha256(setup.mask) if setup.mask else None,
-        zone=target.zone, resolution=setup.photo.resolution,
-        light=light_text(setup.light), proxy=setup.proxy.kind, solver=setup.fit.solver, metric=setup.fit.metric,
-        evaluations=session.evaluations, seconds=round(session.seconds, 2), distance=final.distance,
-        mitsuba=version("mitsuba"), drjit=version("drjit"), numpy=version("numpy"),
+        voldetail=__version__,
+        created=datetime.now(UTC).isoformat(timespec="seconds"),
+        photo=setup.photo.name,
+        photo_sha256=target.photo.sha256,
+        mask_sha256=sha256(setup.mask) if setup.mask else None,
+        zone=target.zone,
+        resolution=setup.photo.resolution,
+        light=light_text(setup.light),
+        proxy=setup.proxy.kind,
+        solver=setup.fit.solver,
+        metric=setup.fit.metric,
+        evaluations=session.evaluations,
+        seconds=round(session.seconds, 2),
+        distance=final.distance,
+        mitsuba=version("mitsuba"),
+        drjit=version("drjit"),
+        numpy=version("numpy"),
         settings=_settings(final, setup, target, session, findings),
     )
     named = final.detail.model_copy(
@@ -58,9 +67,7 @@ def signed(
     return rounded(Detail.model_validate(named.model_dump()))
 
 
-def _settings(
-    final: Evaluation, setup: Setup, target: Target, session: Session, findings: Findings
-) -> dict[str, JsonValue]:
+def _settings(final: Evaluation, setup: Setup, target: Target, session: Session, findings: Findings) -> dict[str, JsonValue]:
     """What else the detail is to say of its fit, by name; only what there was."""
     settings: dict[str, JsonValue] = {"root_seed": setup.seed, "status": findings.status, "noise_seeds": setup.fit.seeds}
     if findings.light_guess is not None:

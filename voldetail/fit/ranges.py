@@ -51,7 +51,10 @@ as near; more numbers for pigment or plates fit a few percent by themselves. Tun
 and rock."""
 
 OF_STONES = {
-    "roughness": "stone_height", "noise.anisotropy": "stone_stretch", "noise.gain": "stone_gain", "shape.0": "stone_profile",
+    "roughness": "stone_height",
+    "noise.anisotropy": "stone_stretch",
+    "noise.gain": "stone_gain",
+    "shape.0": "stone_profile",
 }
 OF_PLATES = {"noise.gain": "plate_gain", "reflectance.height_albedo": "plate_dust"}
 """Numbers that have a range of their own where stones or plates are searched, and the names that this range goes by."""
@@ -59,7 +62,14 @@ OF_PLATES = {"noise.gain": "plate_gain", "reflectance.height_albedo": "plate_dus
 PLAIN_NAME = {own: name for names in (OF_STONES, OF_PLATES) for name, own in names.items()}
 
 LOGARITHMIC = (
-    "softness", "depth", "medium.exponent", "roughness", "stone_height", "stone_gain", "plate_gain", "stone_stretch",
+    "softness",
+    "depth",
+    "medium.exponent",
+    "roughness",
+    "stone_height",
+    "stone_gain",
+    "plate_gain",
+    "stone_stretch",
     "noise.stripe_frequency",
 )
 """Numbers searched on a logarithmic scale though they are no parameter of a detail, or one that is declared linear."""

@@ -64,7 +64,11 @@ class Coefficients:
 
 
 def solve(
-    photo: NDArray[np.float32], parts: Components, mask: NDArray[np.bool_], *, specular: bool = True,
+    photo: NDArray[np.float32],
+    parts: Components,
+    mask: NDArray[np.bool_],
+    *,
+    specular: bool = True,
     background: bool = False,
 ) -> Coefficients:
     """Return the coefficients whose picture has the order statistics of ``photo`` (linear luminance, (H, W)).
@@ -118,10 +122,12 @@ def colours(
     columns = _group_means(np.stack([matt[mask], through[mask]], axis=1)[picture_order])
     brightest = max(float(through[mask].max()), 1e-6)  # where it shows most, all of it does
     least, most = np.percentile(pixels[mask], (1.0, 99.0), axis=0) / brightest
-    found = np.array([
-        bounded_least_squares(columns, wanted[:, c], (1.0 / LEAST_SHARE, float(most[c])), (0.0, float(least[c])))
-        for c in range(3)
-    ])
+    found = np.array(
+        [
+            bounded_least_squares(columns, wanted[:, c], (1.0 / LEAST_SHARE, float(most[c])), (0.0, float(least[c])))
+            for c in range(3)
+        ]
+    )
     return _of_luminance_one(found[:, 0]), _of_luminance_one(found[:, 1])
 
 
@@ -142,8 +148,13 @@ def _group_means(values: NDArray[np.floating]) -> NDArray[np.float64]:
 
 
 def _alternate(
-    columns: NDArray[np.float64], wanted: NDArray[np.float64], weights: NDArray[np.float64],
-    start: NDArray[np.float64], steps: int, upper: tuple[float, ...], lower: tuple[float, ...] | None = None,
+    columns: NDArray[np.float64],
+    wanted: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    start: NDArray[np.float64],
+    steps: int,
+    upper: tuple[float, ...],
+    lower: tuple[float, ...] | None = None,
 ) -> tuple[NDArray[np.float64], float]:
     """Alternate between sorting the picture and solving for its coefficients, ``lower`` (default 0) to ``upper`` each."""
     current = start
@@ -157,7 +168,9 @@ def _alternate(
 
 
 def bounded_least_squares(
-    matrix: NDArray[np.float64], values: NDArray[np.float64], upper: tuple[float, ...] | None = None,
+    matrix: NDArray[np.float64],
+    values: NDArray[np.float64],
+    upper: tuple[float, ...] | None = None,
     lower: tuple[float, ...] | None = None,
 ) -> NDArray[np.float64]:
     """Return x, ``lower`` (default 0) <= x <= ``upper`` (default 1 each), that minimises |matrix x - values|.

@@ -46,8 +46,14 @@ def space_of(setup: Setup, target: Target) -> Space:
             f" {target.shape[1]} x {target.shape[0]}: crop the photo, or use a larger --zone."
         )
     return Space(
-        domain=setup.domain, scale=(coarsest, finest), finest=1.0 / (FINEST_OCTAVE * grain),
-        amplitude=setup.amplitude, plain=setup.fit.solver == "paper", mode=setup.mode, medium=setup.medium,
+        domain=setup.domain,
+        scale=(coarsest, finest),
+        finest=1.0 / (FINEST_OCTAVE * grain),
+        amplitude=setup.amplitude,
+        plain=setup.fit.solver == "paper",
+        mode=setup.mode,
+        medium=setup.medium,
         roughness=MEDIUM_ROUGHNESS if setup.medium else SOLID_ROUGHNESS if setup.mode == "volume" else ROUGHNESS,
-        highest=min(bounds("relief.amplitude")[1], shown * DEEPEST if setup.mode == "volume" else math.inf), cell=cell,
+        highest=min(bounds("relief.amplitude")[1], shown * DEEPEST if setup.mode == "volume" else math.inf),
+        cell=cell,
     )

@@ -47,8 +47,14 @@ class Solver(Protocol):
 
 
 def minimise(
-    solver: Solver, evaluate: Callable[[Sequence[Vector], int], list[float]], start: Vector, *, memory: Memory,
-    seed: int, budget: int, on_step: Callable[[Solution], bool] = lambda solution: True,
+    solver: Solver,
+    evaluate: Callable[[Sequence[Vector], int], list[float]],
+    start: Vector,
+    *,
+    memory: Memory,
+    seed: int,
+    budget: int,
+    on_step: Callable[[Solution], bool] = lambda solution: True,
 ) -> Solution:
     """Return the best of at most ``budget`` evaluations from ``start``.
 
@@ -96,8 +102,14 @@ class CMAES:
         lower: list[float | None] = [None if i in self.periodic else 0.0 for i in range(len(start))]
         upper: list[float | None] = [None if i in self.periodic else 1.0 for i in range(len(start))]
         options = {
-            "bounds": [lower, upper], "popsize": self.population, "seed": seed % (2**31 - 2) + 1, "verbose": -9,
-            "tolfun": self.tolerance, "tolx": 1e-3, "verb_log": 0, "verb_disp": 0,
+            "bounds": [lower, upper],
+            "popsize": self.population,
+            "seed": seed % (2**31 - 2) + 1,
+            "verbose": -9,
+            "tolfun": self.tolerance,
+            "tolx": 1e-3,
+            "verb_log": 0,
+            "verb_disp": 0,
         }
         strategy = cma.CMAEvolutionStrategy(np.clip(start, 0.02, 0.98), memory.spread, options)
         if memory.covariance is not None:

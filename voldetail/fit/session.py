@@ -166,7 +166,11 @@ class Session:
         self.on_state(State(self.stage, tuple(self.pool), self.evaluations, self.seconds, tuple(self.trace), self.started))
 
     def refine(
-        self, candidate: Candidate, objective: Objective, budget: int, solver: Solver | None = None,
+        self,
+        candidate: Candidate,
+        objective: Objective,
+        budget: int,
+        solver: Solver | None = None,
         keep: Callable[[Candidate], None] = lambda candidate: None,
     ) -> Candidate:
         """Return ``candidate`` after a search of ``budget`` evaluations from it, by CMA-ES unless told otherwise.
@@ -187,15 +191,26 @@ class Session:
             if objective is self.coarse:
                 spread = min(spread, COARSE_COOLING * candidate.spread)
             return replace(
-                candidate, vector=solution.vector, value=solution.value, spread=spread,
-                covariance=solution.memory.covariance, spent=candidate.spent + solution.evaluations,
+                candidate,
+                vector=solution.vector,
+                value=solution.value,
+                spread=spread,
+                covariance=solution.memory.covariance,
+                spent=candidate.spent + solution.evaluations,
             )
 
         def on_step(solution: Solution) -> bool:
             keep(after(solution))
             return True
 
-        return after(minimise(
-            chosen, evaluate, candidate.vector, memory=Memory(candidate.spread, candidate.covariance), budget=budget,
-            on_step=on_step, seed=derived_seed(self.root_seed, f"search/{candidate.spent}"),
-        ))
+        return after(
+            minimise(
+                chosen,
+                evaluate,
+                candidate.vector,
+                memory=Memory(candidate.spread, candidate.covariance),
+                budget=budget,
+                on_step=on_step,
+                seed=derived_seed(self.root_seed, f"search/{candidate.spent}"),
+            )
+        )

@@ -88,8 +88,10 @@ class Kind:
             for applies, factor in (
                 (self.fold != "none", FOLD_PENALTY),
                 (self.striped and (self.first, self.last) != (1, 50), STRIPED_CELLS_PENALTY),
-                (self.stones, STONES_PENALTY), (self.pigment, PIGMENT_PENALTY),
-                (self.bordered, BORDERED_PENALTY), (self.plates, PLATES_PENALTY),
+                (self.stones, STONES_PENALTY),
+                (self.pigment, PIGMENT_PENALTY),
+                (self.bordered, BORDERED_PENALTY),
+                (self.plates, PLATES_PENALTY),
             )
             if applies
         )
@@ -149,11 +151,19 @@ class Space:
             return -SHAPE_RANGE, SHAPE_RANGE, False
         specks = min(self.finest, bounds("reflectance.speckle_scale")[1])
         own = {
-            "noise.scale": self.scale, "roughness": self.roughness, "stone_height": STONE_HEIGHT,
+            "noise.scale": self.scale,
+            "roughness": self.roughness,
+            "stone_height": STONE_HEIGHT,
             "stone_stretch": STONE_STRETCH,
-            "stone_profile": (0.0, SHAPE_RANGE), "stone_gain": STONE_GAIN, "plate_gain": PLATE_GAIN, "plate_dust": PLATE_DUST,
-            "noise.anisotropy": self.anisotropy, "noise.stripe_frequency": self.stripes,
-            "reflectance.speckle_scale": (specks / FINEST_SPECKS, specks), "softness": SOFTNESS, "depth": DEPTH,
+            "stone_profile": (0.0, SHAPE_RANGE),
+            "stone_gain": STONE_GAIN,
+            "plate_gain": PLATE_GAIN,
+            "plate_dust": PLATE_DUST,
+            "noise.anisotropy": self.anisotropy,
+            "noise.stripe_frequency": self.stripes,
+            "reflectance.speckle_scale": (specks / FINEST_SPECKS, specks),
+            "softness": SOFTNESS,
+            "depth": DEPTH,
         }.get(name)
         low, high = own or parameter(name).searched or bounds(name)
         return low, high, name in LOGARITHMIC or (name.startswith("noise.") and parameter(name).scale == "log")
@@ -173,16 +183,23 @@ class Space:
         lacunarity = values.get("noise.lacunarity", parameter("noise.lacunarity").default)
         resolvable = 1 + int(max(0.0, math.log(self.finest / values["noise.scale"]) / math.log(lacunarity)))
         noise = NoiseParameters(
-            domain=self.domain, first_neighbour=kind.first, last_neighbour=kind.last, envelope=kind.envelope,  # type: ignore[arg-type]
-            weights=BORDERED if kind.bordered else (1.0, 1.0, 1.0), joining="highest" if kind.stones else "sum",
-            octaves=min(kind.octaves, resolvable), curve=tuple(float(v) for v in fold(profile(shape), kind.fold)),
+            domain=self.domain,  # type: ignore[arg-type]
+            first_neighbour=kind.first,
+            last_neighbour=kind.last,
+            envelope=kind.envelope,  # type: ignore[arg-type]
+            weights=BORDERED if kind.bordered else (1.0, 1.0, 1.0),
+            joining="highest" if kind.stones else "sum",
+            octaves=min(kind.octaves, resolvable),
+            curve=tuple(float(v) for v in fold(profile(shape), kind.fold)),
             **_of_group(values, "noise"),
         )
         amplitude = self.amplitude
         if amplitude is None:
             amplitude = min(values["roughness"] / values["noise.scale"], self.highest)
         return Detail(
-            mode=self.mode, noise=noise, relief=ReliefParameters(amplitude=amplitude),
+            mode=self.mode,
+            noise=noise,
+            relief=ReliefParameters(amplitude=amplitude),
             reflectance=Reflectance().model_copy(update=_of_group(values, "reflectance")),
             medium=self._medium(values, amplitude) if self.medium else None,
         )
@@ -192,8 +209,10 @@ class Space:
         thickness = max(values["softness"] * amplitude, thinnest_edge(self.cell, values["medium.exponent"]))
         extinction = min(values["depth"] / amplitude, CELL_DEPTH / self.cell if self.cell else math.inf)
         return MediumParameters(
-            thickness=float(np.clip(thickness, *bounds("medium.thickness"))), exponent=values["medium.exponent"],
-            extinction=float(np.clip(extinction, *bounds("medium.extinction"))), asymmetry=values["medium.asymmetry"],
+            thickness=float(np.clip(thickness, *bounds("medium.thickness"))),
+            exponent=values["medium.exponent"],
+            extinction=float(np.clip(extinction, *bounds("medium.extinction"))),
+            asymmetry=values["medium.asymmetry"],
         )
 
     def encode(self, kind: Kind, values: dict[str, float]) -> Vector:

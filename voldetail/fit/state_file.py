@@ -43,9 +43,7 @@ _FREE = {
 }
 
 _Count = Annotated[int, Field(ge=0, le=10**9)]
-_Unit = Annotated[
-    float, Field(ge=-1e6, le=1e6)
-]  # searched in [0, 1], but angles wrap and may have gone round
+_Unit = Annotated[float, Field(ge=-1e6, le=1e6)]  # searched in [0, 1], but angles wrap and may have gone round
 
 
 _Entry = Annotated[float, Field(ge=-1e6, le=1e6)]
@@ -135,9 +133,7 @@ def load_state(path: Path, setup: Setup, photo_sha256: str) -> State:
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise InputError(f"{where} is not the state of a fit; start again without --resume.")
     if data.get("version") != STATE_VERSION:
-        raise InputError(
-            f"{where} was written by another version of voldetail; start again without --resume."
-        )
+        raise InputError(f"{where} was written by another version of voldetail; start again without --resume.")
     try:
         record = _StateRecord.model_validate_json(text, strict=True)
     except ValidationError as error:
@@ -201,18 +197,12 @@ def _candidate(record: _CandidateRecord, setup: Setup, where: str) -> Candidate:
         # A detail that can be made is one that can be searched. The bounds do not matter here, only that no
         # octave is too fine for the space and so left out before it is checked.
         plain = setup.fit.solver == "paper"
-        space = Space(
-            setup.domain, (1.0, 2.0), 1e30, setup.amplitude, plain=plain, mode=setup.mode, medium=setup.medium
-        )
+        space = Space(setup.domain, (1.0, 2.0), 1e30, setup.amplitude, plain=plain, mode=setup.mode, medium=setup.medium)
         space.decode(kind, vector)
         covariance = _covariance(record, len(vector))
     except (ValueError, TypeError, OverflowError):
-        raise InputError(
-            f"{where} holds a candidate that this setup cannot have; start again without --resume."
-        ) from None
-    return Candidate(
-        kind, vector, math.inf if record.value is None else record.value, record.spread, record.spent, covariance
-    )
+        raise InputError(f"{where} holds a candidate that this setup cannot have; start again without --resume.") from None
+    return Candidate(kind, vector, math.inf if record.value is None else record.value, record.spread, record.spent, covariance)
 
 
 def _covariance(record: _CandidateRecord, count: int) -> Vector | None:

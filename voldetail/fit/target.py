@@ -84,10 +84,18 @@ def make_target(setup: Setup, photo: Photo | None = None) -> Target:
     tint = mean / brightness if brightness > BLACK else np.ones(3)
     descriptor = describe(light, inside, metric=setup.fit.metric)
     return Target(
-        photo=photo, pixels=pixels, luminance=light, mask=inside, shape=(rows, columns), zone=zone,
-        lamp=lamp, tint=(float(tint[0]), float(tint[1]), float(tint[2])),
-        descriptor=descriptor, photo_halves=halves_apart(light, inside, setup.fit.metric),
-        white=max(1.0, float(light.max())), unevenness=uneven,
+        photo=photo,
+        pixels=pixels,
+        luminance=light,
+        mask=inside,
+        shape=(rows, columns),
+        zone=zone,
+        lamp=lamp,
+        tint=(float(tint[0]), float(tint[1]), float(tint[2])),
+        descriptor=descriptor,
+        photo_halves=halves_apart(light, inside, setup.fit.metric),
+        white=max(1.0, float(light.max())),
+        unevenness=uneven,
     )
 
 
@@ -100,9 +108,7 @@ def _cut(
     return resize(pixels[y : y + h, x : x + w], size), resize_mask(mask[y : y + h, x : x + w], size)
 
 
-def _with_falloff_of(
-    lamp: Lamp, pixels: NDArray[np.float32], mask: NDArray[np.bool_], view: View
-) -> NDArray[np.float32]:
+def _with_falloff_of(lamp: Lamp, pixels: NDArray[np.float32], mask: NDArray[np.bool_], view: View) -> NDArray[np.float32]:
     """Return ``pixels`` with the slow fall-off of their light replaced by that of ``lamp`` on a bare plane.
 
     A flash's true height, its lobe and the lens's vignetting are not known; what they do to the photo belongs to the

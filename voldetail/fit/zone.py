@@ -91,6 +91,7 @@ def around(zone: Zone, shape: tuple[int, int], reach: float) -> Zone:
     x, y, w, h = zone
     rows, columns = shape
     wide, high = min(columns, round(w * reach)), min(rows, round(h * reach))
-    left, top = (min(max(0, at + side // 2 - new // 2), most - new)
-                 for at, side, new, most in ((x, w, wide, columns), (y, h, high, rows)))
+    left, top = (
+        min(max(0, at + side // 2 - new // 2), most - new) for at, side, new, most in ((x, w, wide, columns), (y, h, high, rows))
+    )
     return left, top, wide, high

@@ -1,7 +1,7 @@
 """Densities in files: Mitsuba's grid volumes (.vol), version 3, which its `gridvolume` reads.
 
-    "VOL" 3, int32: 1 (float32), columns nx, rows ny, slices nz, channels 1; float32: the box's least and greatest corner
-    (x, y, z each); nx ny nz float32 densities, x fastest; all little-endian.
+"VOL" 3, int32: 1 (float32), columns nx, rows ny, slices nz, channels 1; float32: the box's least and greatest corner
+(x, y, z each); nx ny nz float32 densities, x fastest; all little-endian.
 """
 
 from __future__ import annotations

@@ -65,8 +65,11 @@ def surface_cost(grid: DensityGrid, level: float = 0.5) -> tuple[int, int]:
 
 
 def isosurface(
-    grid: DensityGrid, level: float = 0.5, outward: Callable[[tuple[Any, ...]], tuple[Any, ...]] | None = None,
-    least_island: float = LEAST_ISLAND, budget: int = DEFAULT_BUDGET,
+    grid: DensityGrid,
+    level: float = 0.5,
+    outward: Callable[[tuple[Any, ...]], tuple[Any, ...]] | None = None,
+    least_island: float = LEAST_ISLAND,
+    budget: int = DEFAULT_BUDGET,
 ) -> Isosurface:
     """Return where ``grid`` has the density ``level``, closed where matter meets the box.
 
@@ -184,9 +187,7 @@ def _without_crumbs(
     return vertices[used], compact.reshape(-1, 3).astype(np.int64), int(np.count_nonzero(~keep))
 
 
-def mend_normals(
-    normals: NDArray[Any], cells: NDArray[np.float64], faces: NDArray[Any], shape: tuple[int, int, int]
-) -> None:
+def mend_normals(normals: NDArray[Any], cells: NDArray[np.float64], faces: NDArray[Any], shape: tuple[int, int, int]) -> None:
     """Make ``normals`` (V, 3) unit vectors, on the box and where they are 0 the mean of the faces'; ``cells`` in cubes."""
     upper = np.asarray(shape[::-1]) - 0.5
     poor = (cells < 0.5).any(axis=1) | (cells > upper).any(axis=1) | ~(np.linalg.norm(normals, axis=1) > 0.0)
@@ -197,9 +198,7 @@ def mend_normals(
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
 
 
-def outward_normals(
-    vertices: NDArray[np.float32], outward: Callable[[tuple[Any, ...]], tuple[Any, ...]]
-) -> NDArray[np.float64]:
+def outward_normals(vertices: NDArray[np.float32], outward: Callable[[tuple[Any, ...]], tuple[Any, ...]]) -> NDArray[np.float64]:
     """Return ``outward`` at ``vertices`` (V, 3) as unit vectors; 0 where it has no direction."""
     mi = mitsuba()
     normals = np.empty((len(vertices), 3))

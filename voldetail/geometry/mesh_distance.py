@@ -67,7 +67,11 @@ def small_triangles(points: NDArray[np.float64], faces: NDArray[np.int64], longe
 
 
 def mesh_distance(
-    vertices: NDArray[np.float64], faces: NDArray[np.int64], lower: tuple[float, float, float], shape: Grid, edge: float,
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int64],
+    lower: tuple[float, float, float],
+    shape: Grid,
+    edge: float,
     reach: tuple[float, float],
 ) -> NDArray[np.float32]:
     """Return the signed distances (nz, ny, nx) from the middles of the cubes from ``lower`` to a closed mesh.
@@ -133,9 +137,7 @@ def _unsigned(points: NDArray[np.float64], triangles: SmallTriangles, band: floa
     return np.minimum(np.sqrt(squared.min(axis=1)), band)
 
 
-def squared_distances(
-    points: NDArray[np.float64], corners: NDArray[np.float64], index: NDArray[np.int64]
-) -> NDArray[np.float32]:
+def squared_distances(points: NDArray[np.float64], corners: NDArray[np.float64], index: NDArray[np.int64]) -> NDArray[np.float32]:
     """Return the squared distances (N, K) from ``points`` (N, 3) to the triangles ``corners[index]``, index (N, K)."""
     return _squared(points, _table(corners), index)
 
@@ -206,8 +208,13 @@ def _range(values: NDArray[np.float64], start: int, count: int) -> tuple[NDArray
 
 
 def _cross(
-    steps: NDArray[np.int16], x: NDArray[np.float64], y: NDArray[np.float64], z: NDArray[np.float64],
-    column: NDArray[np.int64], row: NDArray[np.int64], first: Grid,
+    steps: NDArray[np.int16],
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    z: NDArray[np.float64],
+    column: NDArray[np.int64],
+    row: NDArray[np.int64],
+    first: Grid,
 ) -> None:
     """Add to ``steps`` the crossings of columns with faces, pair by pair."""
     weights = np.empty_like(x)

@@ -59,9 +59,7 @@ def read_triangles(path: Path) -> Triangles:
         with np.errstate(all="ignore"):
             # From memory, with a resolver that holds the buffers and nothing else: no material, no picture,
             # no net.
-            scene = trimesh.load_scene(
-                BytesIO(data), file_type=suffix[1:], resolver=buffers, process=False, skip_materials=True
-            )
+            scene = trimesh.load_scene(BytesIO(data), file_type=suffix[1:], resolver=buffers, process=False, skip_materials=True)
             vertices, faces, uv = _together(scene, path)
     except InputError:
         raise

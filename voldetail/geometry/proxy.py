@@ -56,7 +56,9 @@ def make_proxy(setup: ProxySetup, edge: float, domain: str = "solid", limit: int
     return Proxy(
         positions=(positions @ turn.T + np.asarray(setup.position)).astype(np.float32),
         normals=(normals @ turn.T).astype(np.float32),
-        faces=faces.astype(np.uint32), domain=coordinates.astype(np.float32), own_normals=normals.astype(np.float32),
+        faces=faces.astype(np.uint32),
+        domain=coordinates.astype(np.float32),
+        own_normals=normals.astype(np.float32),
         notes=bare.notes,
     )
 
@@ -86,6 +88,10 @@ def seen_part(proxy: Proxy, view: View, margin: float, *, convex: bool) -> Proxy
         return proxy
     used, compact = np.unique(faces, return_inverse=True)
     return replace(
-        proxy, positions=proxy.positions[used], normals=proxy.normals[used], domain=proxy.domain[used],
-        own_normals=proxy.own_normals[used], faces=compact.reshape(-1, 3).astype(np.uint32),
+        proxy,
+        positions=proxy.positions[used],
+        normals=proxy.normals[used],
+        domain=proxy.domain[used],
+        own_normals=proxy.own_normals[used],
+        faces=compact.reshape(-1, 3).astype(np.uint32),
     )

@@ -60,9 +60,7 @@ def _rawmode(picture: Any) -> str:
     return first if isinstance(first, str) else ""
 
 
-def _sixteen_bits(
-    path: Path, high: Any, rawmode: str, what: str
-) -> tuple[NDArray[np.uint16], NDArray[np.float32] | None]:
+def _sixteen_bits(path: Path, high: Any, rawmode: str, what: str) -> tuple[NDArray[np.uint16], NDArray[np.float32] | None]:
     """Decode 16-bit colour, which Pillow cuts to its high bytes: decode twice, the second time for the low bytes.
 
     Naming the other byte order to the unpacker makes it keep the other byte. Grey with alpha has no such
@@ -92,9 +90,7 @@ def _with_rawmode(arguments: Any, rawmode: str) -> Any:
     return (rawmode, *arguments[1:]) if isinstance(arguments, tuple) else rawmode
 
 
-def _pixels(
-    picture: Image.Image, what: str, path: Path, notes: list[str]
-) -> tuple[NDArray[Any], NDArray[np.float32] | None]:
+def _pixels(picture: Image.Image, what: str, path: Path, notes: list[str]) -> tuple[NDArray[Any], NDArray[np.float32] | None]:
     mode = picture.mode
     transparent = "transparency" in picture.info or mode in ("LA", "La", "PA", "RGBA", "RGBa")
     if mode in ("P", "PA"):

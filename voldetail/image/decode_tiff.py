@@ -25,9 +25,7 @@ def decode_float_tiff(path: Path, what: str) -> Samples | None:
         width, height, channels = int(page.imagewidth), int(page.imagelength), int(page.samplesperpixel)
         check_pixels(width, height, what, path)
         if int(page.imagedepth) != 1 or channels > 4 or int(page.photometric) not in (_GREY, _RGB):
-            raise InputError(
-                f"The {what} {path} is a TIFF of {channels} channels that are not grey or RGB; save it so."
-            )
+            raise InputError(f"The {what} {path} is a TIFF of {channels} channels that are not grey or RGB; save it so.")
         if int(page.compression) not in _STORED + _DEFLATE:
             raise InputError(
                 f"The {what} {path} is a floating-point TIFF compressed by a method that is not read; save it "
@@ -59,6 +57,4 @@ def _check_deflate(
         unpacker = zlib.decompressobj()
         unpacker.decompress(tiff.filehandle.read(count), held * bytes_a_pixel + 1)
         if not unpacker.eof:
-            raise InputError(
-                f"The {what} {path} is damaged: a strip is cut short or unpacks to too much; save it again."
-            )
+            raise InputError(f"The {what} {path} is damaged: a strip is cut short or unpacks to too much; save it again.")

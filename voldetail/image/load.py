@@ -57,8 +57,7 @@ def load_photo(path: str | Path, *, encoding: Encoding = "auto") -> Photo:
     height, width = samples.values.shape[:2]
     if min(height, width) < MIN_SIDE:
         raise InputError(
-            f"The photo {path} has {width} x {height} pixels; at least {MIN_SIDE} a side are needed, so give a larger "
-            "photo."
+            f"The photo {path} has {width} x {height} pixels; at least {MIN_SIDE} a side are needed, so give a larger photo."
         )
     notes = list(samples.notes)
     pixels = _linear(_finite(samples.values, path, "photo"), encoding)

@@ -25,8 +25,7 @@ def load_mask(path: str | Path, shape: tuple[int, int]) -> NDArray[np.bool_]:
     height, width = values.shape[:2]
     if (height, width) != tuple(shape):
         raise InputError(
-            f"The mask {path} has {width} x {height} pixels and the photo {shape[1]} x {shape[0]}; give one of the "
-            "photo's size."
+            f"The mask {path} has {width} x {height} pixels and the photo {shape[1]} x {shape[0]}; give one of the photo's size."
         )
     if values.ndim == 3:
         if float((values.max(axis=2) - values.min(axis=2)).max()) > _COLOUR:

@@ -54,8 +54,14 @@ class Ranking:
 
 
 def rank(
-    groups: Groups, vector: ArrayLike, top: int = 8, *, tones: tuple[ArrayLike, ArrayLike] | None = None,
-    rotations: bool = True, swap: bool = True, indexes: Mapping[str, Index] | None = None,
+    groups: Groups,
+    vector: ArrayLike,
+    top: int = 8,
+    *,
+    tones: tuple[ArrayLike, ArrayLike] | None = None,
+    rotations: bool = True,
+    swap: bool = True,
+    indexes: Mapping[str, Index] | None = None,
 ) -> Ranking:
     """Return the ``top`` entries nearest to the descriptor ``vector`` (750,) in each of ``groups`` and in all of them.
 

@@ -41,7 +41,11 @@ def cached_path(sources: Sequence[Source], counts: int | Sequence[int], name: st
 
 
 def cached(
-    sources: Sequence[Source], counts: int | Sequence[int], name: str = "library", *, workers: int | None = None,
+    sources: Sequence[Source],
+    counts: int | Sequence[int],
+    name: str = "library",
+    *,
+    workers: int | None = None,
     on_progress: Callable[[BuildProgress], None] = lambda progress: None,
 ) -> Library:
     """Return the library of so many entries of each source, built where the cache does not have it whole.

@@ -56,7 +56,12 @@ def distance(a: ArrayLike, b: ArrayLike, w_global: float = GLOBAL) -> float:
 
 
 def nearest(
-    table: Table, query: ArrayLike, top: int = 8, *, rotations: bool = True, swap: bool = True,
+    table: Table,
+    query: ArrayLike,
+    top: int = 8,
+    *,
+    rotations: bool = True,
+    swap: bool = True,
     among: NDArray[np.intp] | None = None,
 ) -> tuple[Match, ...]:
     """Return the ``top`` entries nearest to ``query`` (750,), nearest first, each in its best turn and order of tones.

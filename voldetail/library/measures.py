@@ -1,7 +1,7 @@
 """What an entry's picture is described with, of which there are two: one measure for all entries of a library.
 
-    structures   the vector of GKHF14 section 4, see `vectors`: two-tone maps, compared in any turn
-    reliefs      the project's own metric, see `metric.vector`: pictures of reliefs under one light
+structures   the vector of GKHF14 section 4, see `vectors`: two-tone maps, compared in any turn
+reliefs      the project's own metric, see `metric.vector`: pictures of reliefs under one light
 """
 
 from __future__ import annotations

@@ -49,9 +49,7 @@ class Novelty:
         )
 
 
-def novelty_of(
-    group: Group, answer: Answer, *, rotations: bool = True, swap: bool = True, side: int = SIDE
-) -> Novelty | None:
+def novelty_of(group: Group, answer: Answer, *, rotations: bool = True, swap: bool = True, side: int = SIDE) -> Novelty | None:
     """Return how far ``answer`` is beside ``PICTURES`` random pictures, of ``side`` pixels, of its model.
 
     None for entries that are of no structure model. About a second.

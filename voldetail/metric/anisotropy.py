@@ -72,9 +72,7 @@ def _zone(luminance: NDArray[np.floating], mask: Mask | None) -> tuple[NDArray[n
     return np.asarray(to_srgb(np.maximum(np.where(use, image, 0), 0)), np.float64), use
 
 
-def _elongation(
-    power: NDArray[np.float64], x: NDArray[np.float64], y: NDArray[np.float64], lowest: float
-) -> tuple[float, float]:
+def _elongation(power: NDArray[np.float64], x: NDArray[np.float64], y: NDArray[np.float64], lowest: float) -> tuple[float, float]:
     """Main axes of the spectrum between two radii, by moments within an ellipse that follows them.
 
     Moments within a circle underrate a stretched spectrum, since the circle cuts its long axis and not its short

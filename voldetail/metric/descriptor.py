@@ -120,8 +120,7 @@ def _compared(a: Descriptor, b: Descriptor, basis: Mapping[str, Parts]) -> dict[
 def _same(a: Mapping[str, Parts], b: Mapping[str, Parts]) -> bool:
     """Whether two bases are equal in content: a descriptor may have been to another process and back."""
     return a.keys() == b.keys() and all(
-        a[name].keys() == b[name].keys() and all(_equal(values, b[name][part]) for part, values in a[name].items())
-        for name in a
+        a[name].keys() == b[name].keys() and all(_equal(values, b[name][part]) for part, values in a[name].items()) for name in a
     )
 
 

@@ -129,9 +129,7 @@ def single_octave(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, *numbe
     return octave_and_owner(x, settings, salt, *numbers)[0]
 
 
-def octave_and_owner(
-    x: tuple[Any, ...], settings: NoiseSettings, salt: Any, *numbers: Any
-) -> tuple[Any, Any | None]:
+def octave_and_owner(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, *numbers: Any) -> tuple[Any, Any | None]:
     """Return `single_octave` and the hash word of the cell or stone that ``x`` belongs to, None where all points count."""
     if settings.highest:
         return highest_stone(x, salt, StoneShape(*numbers), settings.gaussian)
@@ -154,9 +152,7 @@ def _sum_of_all(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, phi: Any
         squared = _squared(vector)
         distance = dr.sqrt(dr.maximum(squared, FLOOR))
         window = dr.square(dr.maximum(1.0 - squared * (1.0 / radius**2), 0.0))
-        value = (
-            _envelope(distance, settings.gaussian) * window * _stripes(vector, word, float_type, phi, theta)
-        )
+        value = _envelope(distance, settings.gaussian) * window * _stripes(vector, word, float_type, phi, theta)
         return index + 1, total + value
 
     _, total = dr.while_loop(
@@ -169,9 +165,7 @@ def _sum_of_all(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, phi: Any
     return total
 
 
-def _sum_of_ranks(
-    x: tuple[Any, ...], settings: NoiseSettings, salt: Any, phi: Any, theta: Any
-) -> tuple[Any, Any, Any]:
+def _sum_of_ranks(x: tuple[Any, ...], settings: NoiseSettings, salt: Any, phi: Any, theta: Any) -> tuple[Any, Any, Any]:
     weights = (*settings.weights, 0.0)
     last = max((i + 1 for i, w in enumerate(weights) if w != 0.0), default=1)
     # The point after the last one is needed only to know where stripes must fade.
@@ -191,9 +185,7 @@ def _sum_of_ranks(
                 near, far = (rank, border + 1) if rank <= border else (border, rank)
                 fade = fade * dr.clip((distances[far] - distances[near]) * (1.0 / RANK_FADE), 0.0, 1.0)
         stripes = _stripes(*vectors[rank], float_type, phi, theta)
-        total += (
-            weights[rank] * _envelope(distances[rank], settings.gaussian) * (1.0 + (stripes - 1.0) * fade)
-        )
+        total += weights[rank] * _envelope(distances[rank], settings.gaussian) * (1.0 + (stripes - 1.0) * fade)
     return total, vectors[0][1], indices[0]
 
 

@@ -87,9 +87,7 @@ def unit(word: Any, float_type: Any) -> Any:
     return float_type(word >> 8) * UNIT_24
 
 
-def feature_point(
-    cell: tuple[Any, Any, Any], salt: Any, dims: int, float_type: Any
-) -> tuple[tuple[Any, ...], Any]:
+def feature_point(cell: tuple[Any, Any, Any], salt: Any, dims: int, float_type: Any) -> tuple[tuple[Any, ...], Any]:
     """Return (position inside the cell as ``dims`` numbers in [0, 1), spare hash word) for integer cells."""
     ix, iy, iz = (dr.reinterpret_array(type(salt), v) for v in cell)
     a, b, c, d = cell_hash(ix, iy, iz, salt)
@@ -133,9 +131,7 @@ class Neighbourhood:
         return tuple(s + j - r for s, j, r in zip(shift, jitter, self.rest, strict=True)), word
 
 
-def nearest_points(
-    x: tuple[Any, ...], salt: Any, needed: Any = RANKS
-) -> tuple[list[Any], list[Any], Neighbourhood]:
+def nearest_points(x: tuple[Any, ...], salt: Any, needed: Any = RANKS) -> tuple[list[Any], list[Any], Neighbourhood]:
     """Return the four closest feature points to ``x``: (distances, table indices, their Neighbourhood).
 
     ``needed`` (1 to 4) is how many of the four must be exact; fewer is faster. Distances are ordered;

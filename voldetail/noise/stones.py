@@ -117,6 +117,4 @@ def _turned(vector: tuple[Any, ...], r: Any, i: Any, j: Any, k: Any) -> tuple[An
     # v + 2 (r t + q x t) / |q|^2 with t = q x v: no square root, whose last bits could differ.
     tx, ty, tz = j * z - k * y, k * x - i * z, i * y - j * x
     f = 2.0 / length
-    return (
-        x + f * (r * tx + j * tz - k * ty), y + f * (r * ty + k * tx - i * tz), z + f * (r * tz + i * ty - j * tx)
-    )
+    return (x + f * (r * tx + j * tz - k * ty), y + f * (r * ty + k * tx - i * tz), z + f * (r * tz + i * ty - j * tx))

@@ -133,6 +133,4 @@ def wavelet_noise(dims: int, float_type: Any) -> WaveletNoise:
 
 
 def _turned(points: tuple[Any, ...]) -> tuple[Any, ...]:
-    return tuple(
-        dr.fma(points[0], float(row[0]), dr.fma(points[1], float(row[1]), points[2] * float(row[2]))) for row in TURN
-    )
+    return tuple(dr.fma(points[0], float(row[0]), dr.fma(points[1], float(row[1]), points[2] * float(row[2]))) for row in TURN)

@@ -70,8 +70,7 @@ def migrated(data: dict[str, Any], newest: int, migrations: Mapping[int, Migrati
         raise InputError(f'{where} has no usable "version": {shown(version)}; allowed: 1 to {newest}.')
     if version > newest:
         raise InputError(
-            f"{where} has version {shown(version)}, made by a newer voldetail: update"
-            f" (this one reads up to version {newest})."
+            f"{where} has version {shown(version)}, made by a newer voldetail: update (this one reads up to version {newest})."
         )
     kind = data.get("format")
     for step in range(version, newest):

@@ -52,9 +52,7 @@ def record_in(annotation: Any) -> type[BaseModel] | None:
     return None
 
 
-def _find(
-    model: type[BaseModel], loc: tuple[int | str, ...]
-) -> tuple[type[BaseModel] | None, FieldInfo | None]:
+def _find(model: type[BaseModel], loc: tuple[int | str, ...]) -> tuple[type[BaseModel] | None, FieldInfo | None]:
     """The record in which the last name of `loc` was looked up, and its field; None where there is none."""
     here: type[BaseModel] | None = model
     owner, field = here, None
@@ -84,12 +82,7 @@ def _allowed(field: FieldInfo | None) -> str:
     if get_origin(kind) is Annotated:  # of each number in a list
         kind, *own = get_args(kind)
         limits = [m for one in own for m in getattr(one, "metadata", [one])]
-    limit = {
-        name: getattr(m, name)
-        for m in limits
-        for name in ("ge", "gt", "le", "lt")
-        if hasattr(m, name)
-    }
+    limit = {name: getattr(m, name) for m in limits for name in ("ge", "gt", "le", "lt") if hasattr(m, name)}
     words = {"gt": "over {:.12g}", "ge": "at least {:.12g}", "lt": "under {:.12g}", "le": "at most {:.12g}"}
     span = " and ".join(words[name].format(limit[name]) for name in words if name in limit)
     noun = next((words for of, words in _NOUNS if kind is of), "")

@@ -64,7 +64,9 @@ def faces_camera(setup: Setup) -> bool:
     """Whether the proxy is a plane seen head-on without perspective, which fills the view."""
     proxy = setup.proxy
     return (
-        proxy.row.flat and setup.camera.kind == "orthographic" and proxy.size is None
+        proxy.row.flat
+        and setup.camera.kind == "orthographic"
+        and proxy.size is None
         and all(angle == 0 for angle in proxy.rotation)
     )
 

@@ -37,7 +37,5 @@ def environment_emitter(path: Path) -> Any:
         raise InputError(f"The environment map {path.name} cannot be read: it is damaged or not an image.") from error
     values = np.asarray(bitmap)
     if not np.isfinite(values).all() or values.min() < 0:
-        raise InputError(
-            f"The environment map {path.name} holds values that are negative or not finite: mend it first."
-        )
+        raise InputError(f"The environment map {path.name} holds values that are negative or not finite: mend it first.")
     return mi.load_dict({"type": "envmap", "bitmap": bitmap})

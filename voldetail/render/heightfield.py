@@ -125,7 +125,8 @@ class HeightField:
         if subsamples not in self._samples:
             x, y = self.view.coordinates(subsamples)
             self._samples[subsamples] = (
-                mi.Float((x - self.view.left) / self.step + MARGIN), mi.Float((self.view.top - y) / self.step + MARGIN)
+                mi.Float((x - self.view.left) / self.step + MARGIN),
+                mi.Float((self.view.top - y) / self.step + MARGIN),
             )
         return self._samples[subsamples]
 
@@ -137,10 +138,7 @@ class HeightField:
         index = row * self.columns + column
         out = []
         for field in fields:
-            a, b, c, d = (
-                dr.gather(self.float_type, field, index + offset)
-                for offset in (0, 1, self.columns, self.columns + 1)
-            )
+            a, b, c, d = (dr.gather(self.float_type, field, index + offset) for offset in (0, 1, self.columns, self.columns + 1))
             upper, lower = dr.lerp(a, b, fx), dr.lerp(c, d, fx)
             out.append(dr.lerp(upper, lower, fy))
         return out

@@ -188,6 +188,7 @@ class Diffusion:
 
     def solve(self, source: Values) -> Values:
         """Return f of the source q (conjugate gradients: Hestenes & Stiefel 1952)."""
+
         def dot(a: Values, b: Values) -> float:
             return float(np.einsum("i,i", a, b))  # in one thread: others would cost more than they help
 

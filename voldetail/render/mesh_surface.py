@@ -31,7 +31,11 @@ class TracedMesh:
     """A mesh traced by Mitsuba, seen through ``view``, in a scene with its ``emitters``."""
 
     def __init__(
-        self, view: View, *, one_sided_sky: bool = False, bsdf: dict[str, Any] | None = None,
+        self,
+        view: View,
+        *,
+        one_sided_sky: bool = False,
+        bsdf: dict[str, Any] | None = None,
         emitters: dict[str, Any] | None = None,
     ) -> None:
         mi = mitsuba()
@@ -65,9 +69,7 @@ class TracedMesh:
             parameters.update()
         if diffuse is not None:
             mesh.add_attribute(VERTEX_ALBEDO, 3, dr.ravel(mi.Color3f(*diffuse)))
-        self.scene = mi.load_dict(
-            {"type": "scene", "embree_use_robust_intersections": True, SHAPE: mesh, **self._emitters}
-        )
+        self.scene = mi.load_dict({"type": "scene", "embree_use_robust_intersections": True, SHAPE: mesh, **self._emitters})
 
     def _diffuse(self, detail: AnyDetail) -> tuple[Any, ...] | None:
         """Return the albedo of the vertices where a BSDF is to take it from them."""
@@ -139,8 +141,14 @@ class MeshSurface(TracedMesh):
     """
 
     def __init__(
-        self, proxy: Proxy, view: View, *, scale: float = 1.0, one_sided_sky: bool = False,
-        bsdf: dict[str, Any] | None = None, emitters: dict[str, Any] | None = None,
+        self,
+        proxy: Proxy,
+        view: View,
+        *,
+        scale: float = 1.0,
+        one_sided_sky: bool = False,
+        bsdf: dict[str, Any] | None = None,
+        emitters: dict[str, Any] | None = None,
     ) -> None:
         super().__init__(view, one_sided_sky=one_sided_sky, bsdf=bsdf, emitters=emitters)
         mi = mitsuba()
@@ -176,8 +184,14 @@ class VolumeSurface(TracedMesh):
     """The surface of solid matter that a volumetric detail makes, traced by Mitsuba, with normals from its density."""
 
     def __init__(
-        self, texture: Hypertexture, surface: Isosurface, view: View, *, one_sided_sky: bool = False,
-        bsdf: dict[str, Any] | None = None, emitters: dict[str, Any] | None = None,
+        self,
+        texture: Hypertexture,
+        surface: Isosurface,
+        view: View,
+        *,
+        one_sided_sky: bool = False,
+        bsdf: dict[str, Any] | None = None,
+        emitters: dict[str, Any] | None = None,
     ) -> None:
         super().__init__(view, one_sided_sky=one_sided_sky, bsdf=bsdf, emitters=emitters)
         mi = mitsuba()
@@ -187,10 +201,6 @@ class VolumeSurface(TracedMesh):
         if detail.colour is not None:
             own = surface.normals @ texture.shell.turn.astype(np.float32)
             normals = tuple(mi.Float(np.ascontiguousarray(own[:, axis])) for axis in range(3))
-        _, self.albedo = relief_and_albedo(
-            detail, texture.shell.own(points), texture.scale, spacing=view.pixel, normals=normals
-        )
+        _, self.albedo = relief_and_albedo(detail, texture.shell.own(points), texture.scale, spacing=view.pixel, normals=normals)
         dr.eval(self.albedo)
-        self._load(
-            mi.Float(surface.vertices.ravel()), surface.faces, mi.Float(surface.normals.ravel()), self._diffuse(detail)
-        )
+        self._load(mi.Float(surface.vertices.ravel()), surface.faces, mi.Float(surface.normals.ravel()), self._diffuse(detail))

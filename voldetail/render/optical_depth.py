@@ -108,9 +108,7 @@ class LightDepth:
             along = (mi.Float(slices - k) - 0.5) * self.edge
             index = dr.select(self.sign > 0.0, slices - 1 - k, k) * steps[w]
             # In cells from the box's corner, in the middle of the slice; a column may enter or leave within a slice.
-            place = [
-                (foot[i] + self.sign * along * slope[i] - self.lower[a]) / self.edge for i, a in enumerate(self.others)
-            ]
+            place = [(foot[i] + self.sign * along * slope[i] - self.lower[a]) / self.edge for i, a in enumerate(self.others)]
             enters, leaves = mi.Float(-0.5), mi.Float(0.5)
             for p, aside, a in zip(place, shift, self.others, strict=True):
                 one, other = (-SLACK - p) / aside, (mi.Float(cells[a]) + SLACK - p) / aside
@@ -154,14 +152,10 @@ class LightDepth:
         w = point[self.axis]
         place = [point[a] for a in self.others]
         slope = self._slope(place, w)
-        spot = [
-            (p + (self.far - w) * s - o) * self.per_spacing for p, s, o in zip(place, slope, self.origin, strict=True)
-        ]
+        spot = [(p + (self.far - w) * s - o) * self.per_spacing for p, s, o in zip(place, slope, self.origin, strict=True)]
         # From the nearest face, in slices.
         node = dr.clip(mi.Float(self.slices) - dr.abs(w - self.far) / self.edge, 0.0, mi.Float(self.slices))
         low = dr.minimum(mi.UInt32(node), self.slices - 1)
         steps = [mi.UInt32(1), self.counts[0]]
-        near, far = (
-            self._bilinear(self.nodes, spot, self.counts, steps, (low + i) * self._stride, active) for i in (0, 1)
-        )
+        near, far = (self._bilinear(self.nodes, spot, self.counts, steps, (low + i) * self._stride, active) for i in (0, 1))
         return dr.lerp(near, far, node - mi.Float(low))

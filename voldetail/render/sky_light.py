@@ -95,9 +95,7 @@ def icosahedron() -> list[tuple[float, float, float]]:
     So the six in front of the plane z = 0, all that a relief on it sees, lean to no side.
     """
     golden = (1.0 + math.sqrt(5.0)) / 2.0
-    corners = [
-        np.roll([0.0, one, other * golden], turn) for turn in range(3) for one in (1.0, -1.0) for other in (1.0, -1.0)
-    ]
+    corners = [np.roll([0.0, one, other * golden], turn) for turn in range(3) for one in (1.0, -1.0) for other in (1.0, -1.0)]
     along = np.array([[1.0, -1.0, 0.0], [1.0, 1.0, -2.0], [1.0, 1.0, 1.0]])  # the last is the axis
     x, y, z = (along / np.linalg.norm(along, axis=1, keepdims=True)) @ np.array(corners).T / math.hypot(1.0, golden)
     c, s = math.cos(TURN), math.sin(TURN)

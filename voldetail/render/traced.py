@@ -18,8 +18,12 @@ def sensor_of(view: View) -> Any:
     mi = mitsuba()
     half_wide = (view.right - view.left) / 2
     film = {
-        "type": "hdrfilm", "width": view.columns, "height": view.rows, "pixel_format": "rgba",
-        "component_format": "float32", "rfilter": {"type": "box"},
+        "type": "hdrfilm",
+        "width": view.columns,
+        "height": view.rows,
+        "pixel_format": "rgba",
+        "component_format": "float32",
+        "rfilter": {"type": "box"},
     }
     placed = mi.ScalarTransform4f().look_at([0, 0, view.distance], [0, 0, 0], [0, 1, 0])
     if view.perspective:

@@ -69,13 +69,21 @@ def box_of(grid: DensityGrid, medium: Medium, albedo: list[float]) -> dict[str, 
     unit = transform().translate(lower.tolist()).scale((upper - lower).tolist())
     cube = transform().translate((0.5 * (lower + upper)).tolist()).scale((0.5 * (upper - lower)).tolist())
     density = {
-        "type": "gridvolume", "grid": mitsuba().VolumeGrid(np.ascontiguousarray(grid.array()[..., None])), "raw": True,
-        "filter_type": "trilinear", "wrap_mode": "clamp", "to_world": unit,
+        "type": "gridvolume",
+        "grid": mitsuba().VolumeGrid(np.ascontiguousarray(grid.array()[..., None])),
+        "raw": True,
+        "filter_type": "trilinear",
+        "wrap_mode": "clamp",
+        "to_world": unit,
     }
     return {
-        "type": "cube", "to_world": cube, "bsdf": {"type": "null"},
+        "type": "cube",
+        "to_world": cube,
+        "bsdf": {"type": "null"},
         "interior": {
-            "type": "heterogeneous", "sigma_t": density, "scale": min(medium.extinction, OPAQUE / grid.edge),
+            "type": "heterogeneous",
+            "sigma_t": density,
+            "scale": min(medium.extinction, OPAQUE / grid.edge),
             "albedo": {"type": "constvolume", "value": {"type": "rgb", "value": albedo}},
             "phase": {"type": "hg", "g": medium.asymmetry or 0.0},
         },

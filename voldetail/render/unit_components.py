@@ -72,7 +72,10 @@ class Components:
 
 
 def components(
-    surface: HeightField | TracedMesh | MarchedVolume, lamp: Lamp, *, subsamples: int = 2,
+    surface: HeightField | TracedMesh | MarchedVolume,
+    lamp: Lamp,
+    *,
+    subsamples: int = 2,
     shininess: tuple[float, ...] = SHININESS,
 ) -> Components:
     """Return the unit components of the surface as it was last updated, ``subsamples`` squared samples a pixel.
@@ -137,8 +140,6 @@ def traced_picture(
     """
     sensor = sensor_of(surface.view)
     integrator = surface.integrator if isinstance(surface, TracedVolume) else path_integrator()
-    picture = np.asarray(
-        mitsuba().render(surface.scene, sensor=sensor, integrator=integrator, spp=samples, seed=seed)
-    )
+    picture = np.asarray(mitsuba().render(surface.scene, sensor=sensor, integrator=integrator, spp=samples, seed=seed))
     colour, covered = picture[..., :3], picture[..., 3:4]
     return np.asarray(colour + (1.0 - covered) * np.asarray(background, dtype=np.float32), dtype=np.float32)

@@ -63,8 +63,15 @@ class Volume(MarchedVolume):
     """
 
     def __init__(
-        self, proxy: ProxySetup, view: View, *, edge: float | None = None, scale: float = 1.0, whole_plane: bool = False,
-        budget: int | None = None, tiles: bool = False,
+        self,
+        proxy: ProxySetup,
+        view: View,
+        *,
+        edge: float | None = None,
+        scale: float = 1.0,
+        whole_plane: bool = False,
+        budget: int | None = None,
+        tiles: bool = False,
     ) -> None:
         super().__init__(view)
         self.proxy, self.edge, self.scale, self.whole_plane = proxy, edge or view.pixel, scale, whole_plane
@@ -96,8 +103,9 @@ class Volume(MarchedVolume):
             if thickness <= planned.thickness and thickness / 2 + amplitude <= planned.thickness / 2 + planned.amplitude:
                 # The distances serve; how thick the shell about them is, and how high relief may be, is free.
                 return replace(kept, plan=replace(planned, thickness=thickness, amplitude=amplitude))
-            thickness, amplitude = (MESH_STEP * max(v, w) for v, w in
-                                    ((thickness, planned.thickness), (amplitude, planned.amplitude)))
+            thickness, amplitude = (
+                MESH_STEP * max(v, w) for v, w in ((thickness, planned.thickness), (amplitude, planned.amplitude))
+            )
         shell = make_shell(self.plan(thickness, amplitude, solid))
         if not primitive_of(self.proxy).exact:
             self._kept = shell
@@ -164,6 +172,10 @@ def windowed(plan: ShellPlan, view: View, margin: float) -> ShellPlan:
         counts.append(max(stop - start, 1))
     share = counts[0] * counts[1] / (nx * ny)
     return replace(
-        plan, lower=(starts[0], starts[1], z), shape=(nz, counts[1], counts[0]),
-        byte_count=int(plan.byte_count * share), seconds=plan.seconds * share, blocks=math.ceil(plan.blocks * share),
+        plan,
+        lower=(starts[0], starts[1], z),
+        shape=(nz, counts[1], counts[0]),
+        byte_count=int(plan.byte_count * share),
+        seconds=plan.seconds * share,
+        blocks=math.ceil(plan.blocks * share),
     )

@@ -42,9 +42,7 @@ def style(axes: Axes, ink: Ink, title: str, along: str, up: str) -> None:
     axes.set_axisbelow(True)
 
 
-def draw_histograms(
-    axes: Axes, ink: Ink, photo: NDArray[Any], fitted: NDArray[Any], mask: NDArray[np.bool_]
-) -> None:
+def draw_histograms(axes: Axes, ink: Ink, photo: NDArray[Any], fitted: NDArray[Any], mask: NDArray[np.bool_]) -> None:
     """Draw how often each brightness occurs in photo and fit (linear pictures (H, W, 3)), inside ``mask``."""
     edges = np.linspace(0, 1, BINS + 1)
     for picture, colour, name, filled in (
@@ -53,12 +51,8 @@ def draw_histograms(
     ):
         values = np.clip(to_srgb(luminance(picture)[mask]), 0, 1)
         share = 100 * np.histogram(values, edges)[0] / max(values.size, 1)
-        axes.stairs(
-            share, edges, fill=filled, color=colour, alpha=0.45 if filled else 1.0, linewidth=1.6, label=name
-        )
-    style(
-        axes, ink, "Brightness of photo and fit", "brightness on the screen, 0 black to 1 white", "pixels, %"
-    )
+        axes.stairs(share, edges, fill=filled, color=colour, alpha=0.45 if filled else 1.0, linewidth=1.6, label=name)
+    style(axes, ink, "Brightness of photo and fit", "brightness on the screen, 0 black to 1 white", "pixels, %")
     axes.set_xlim(0, 1)
     _legend(axes, ink)
 
@@ -70,12 +64,8 @@ def draw_convergence(axes: Axes, ink: Ink, result: FitResult) -> None:
     count, best = np.array(trace, dtype=float).T
     best = np.where(best > 0, best, np.nan)
     lasting = np.append(best[:-1], best[-2:-1])  # the last improvement holds to the end
-    axes.step(
-        count[: len(lasting)], lasting, where="post", color=FIT_COLOUR, linewidth=1.8, label="best M so far"
-    )
-    axes.plot(
-        count[-1], best[-1], "o", color=FIT_COLOUR, markersize=6, label="M of the detail, with its own seed"
-    )
+    axes.step(count[: len(lasting)], lasting, where="post", color=FIT_COLOUR, linewidth=1.8, label="best M so far")
+    axes.plot(count[-1], best[-1], "o", color=FIT_COLOUR, markersize=6, label="M of the detail, with its own seed")
     axes.annotate(
         number(result.distance),
         (count[-1], best[-1]),
@@ -111,9 +101,7 @@ def _draw_floors(axes: Axes, floor: NoiseFloor) -> None:
     )
     for value, name, dashes in marks:
         if value:
-            axes.axhline(
-                value, color=PHOTO_COLOUR, linestyle=dashes, linewidth=1.4, label=f"{name}: {number(value)}"
-            )
+            axes.axhline(value, color=PHOTO_COLOUR, linestyle=dashes, linewidth=1.4, label=f"{name}: {number(value)}")
 
 
 def draw_profile(axes: Axes, ink: Ink, detail: Detail) -> None:

@@ -81,7 +81,10 @@ def amplitude_words(result: FitResult) -> str:
 
 
 COLOUR_WORDS = {
-    "none": "one tint", "noise": "by example", "height": "with the relief's height", "hollow": "with its hollows",
+    "none": "one tint",
+    "noise": "by example",
+    "height": "with the relief's height",
+    "hollow": "with its hollows",
     "cell": "by the cell",
 }
 

@@ -38,9 +38,7 @@ def write_contact_sheet(path: Path, frames: Sequence[tuple[str, NDArray[Any]]], 
     for index, (caption, picture) in enumerate(frames):
         row, column = divmod(index, columns)
         left, top = column * tile, 60 + row * (high + CAPTION_PIXELS) - 8
-        axes = figure.add_axes(
-            ((left + 4) / width, 1 - (top + high - 4) / height, (tile - 8) / width, (high - 8) / height)
-        )
+        axes = figure.add_axes(((left + 4) / width, 1 - (top + high - 4) / height, (tile - 8) / width, (high - 8) / height))
         shrunk = resize(picture, (high, tile)) if picture.shape[1] > tile else picture
         axes.imshow(encoded(shrunk), aspect="auto", interpolation="bilinear")
         axes.set_axis_off()

@@ -44,8 +44,7 @@ def page(result: FitResult, gallery: Gallery) -> str:
         "version": escape(detail.provenance.voldetail if detail.provenance else ""),
         "summary": escape(summary(detail)),
         "verdict": f"<b>{escape(_heading(judged.word))}</b> {escape(judged.sentence)}",
-        "pair": _figure(photo, "Photo: the zone that was fitted")
-        + _figure(fitted, "Fit: same scale, same light, same exposure"),
+        "pair": _figure(photo, "Photo: the zone that was fitted") + _figure(fitted, "Fit: same scale, same light, same exposure"),
         "overlay": _figure(gallery.overlay, f"{overlay_words(result.setup)}. Light: {light}."),
         "facts": _rows([(label, text) for label, text in facts(result)]),
         "lights": "".join(_figure(p, caption[:1].upper() + caption[1:]) for caption, p in gallery.lights),

@@ -52,9 +52,7 @@ class _Page:
         options = {"color": INK.text, "va": "top"} | options
         self.figure.text(left / WIDTH, y, words, fontsize=size, parse_math=False, **options)
 
-    def picture(
-        self, linear: NDArray[Any], left: float, width: float, height: float, caption: str, size: float = 9
-    ) -> Axes:
+    def picture(self, linear: NDArray[Any], left: float, width: float, height: float, caption: str, size: float = 9) -> Axes:
         """Show a picture at the top of its box, its caption below it."""
         axes = self.axes(left, width, height)
         axes.imshow(encoded(linear), interpolation="bicubic", aspect="equal")

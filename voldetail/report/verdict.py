@@ -53,8 +53,7 @@ def verdict(distance: float, floor: NoiseFloor) -> Verdict:
     meaning = {
         "as alike": f"as near to the photo as {against} are to each other",
         "close": f"close to the photo, {ratio:.1f} times as far as {against} from each other",
-        "alike": f"like the photo but visibly different, {ratio:.1f} times as far as {against} from each"
-        " other",
+        "alike": f"like the photo but visibly different, {ratio:.1f} times as far as {against} from each other",
         "no match": f"not a match, {ratio:.3g} times as far as {against} from each other;"
         " check the light, the zone and the proxy, or let it search longer",
     }[word]

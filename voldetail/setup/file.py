@@ -43,18 +43,18 @@ def load_setup(path: Path | str, overrides: Sequence[str] = (), given: Sequence[
 
 
 def setup_from_text(
-    text: str, overrides: Sequence[str] = (), *, where: str = "The setup", folder: Path | None = None,
+    text: str,
+    overrides: Sequence[str] = (),
+    *,
+    where: str = "The setup",
+    folder: Path | None = None,
     given: Sequence[Given] = (),
 ) -> Setup:
     """The Setup in the TOML `text`, as `load_setup`; relative paths start at `folder` (default: current)."""
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        reason = (
-            printable(str(error))
-            if isinstance(error, tomllib.TOMLDecodeError)
-            else "a value is too large or deep"
-        )
+        reason = printable(str(error)) if isinstance(error, tomllib.TOMLDecodeError) else "a value is too large or deep"
         raise InputError(f"{where} is not valid TOML: {reason}.") from None
     data = _with_paths(data, folder or Path())
     changed = list(given)
@@ -66,9 +66,7 @@ def setup_from_text(
     return setup_from(data, where=where, sources={one.key: one.source for one in changed})
 
 
-def setup_from(
-    data: Mapping[str, Any], where: str = "The setup", sources: Mapping[tuple[str, ...], str] | None = None
-) -> Setup:
+def setup_from(data: Mapping[str, Any], where: str = "The setup", sources: Mapping[tuple[str, ...], str] | None = None) -> Setup:
     """The Setup in nested dictionaries; relative paths are relative to the current folder.
 
     `light` may be text, as for `parse_light`, or a Light. Errors (InputError) start with `where`, or with the
@@ -132,9 +130,7 @@ def _override(text: str) -> tuple[tuple[str, ...], Any]:
     name, equals, value = text.partition("=")
     key = tuple(part.strip() for part in name.split("."))
     if not equals or not all(key):
-        raise InputError(
-            f"The override {shown(text)} is not of the form key.sub=value, e.g. photo.resolution=128."
-        )
+        raise InputError(f"The override {shown(text)} is not of the form key.sub=value, e.g. photo.resolution=128.")
     value = value.strip()
     if not value:
         return key, None

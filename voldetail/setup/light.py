@@ -30,9 +30,7 @@ _Share = Annotated[float, Field(ge=0, le=1)]
 class Light(Record):
     """The light: a `direction` (made a unit vector), a `position`, a phone's flash at the camera, or not known yet."""
 
-    kind: LightName = Field(
-        default="directional", description="The kind of light; auto is estimated from the photo by a fit."
-    )
+    kind: LightName = Field(default="directional", description="The kind of light; auto is estimated from the photo by a fit.")
     direction: Vector | None = Field(
         default=None,
         description="From the surface to the light; directional only.",
@@ -57,8 +55,7 @@ class Light(Record):
     )
     foot: tuple[_Share, _Share] | None = Field(
         default=None,
-        description="Where in the photo the flash is nearest, as fractions from the left and the top;"
-        " null: the brightest point.",
+        description="Where in the photo the flash is nearest, as fractions from the left and the top; null: the brightest point.",
         json_schema_extra={"allowed": "two numbers u, v, each 0 to 1"},
     )
     height: float = Field(

@@ -33,18 +33,14 @@ _Turn = Annotated[float, Field(ge=-360, le=360)]
 class PhotoSetup(Record):
     """The photo and the part of it that is looked at."""
 
-    path: str = Field(
-        min_length=1, description="The photo file, or skimage:gravel, skimage:grass or skimage:brick."
-    )
+    path: str = Field(min_length=1, description="The photo file, or skimage:gravel, skimage:grass or skimage:brick.")
     encoding: Literal["auto", "srgb", "linear"] = Field(
         default="auto", description="How its numbers stand for light; auto goes by the file's kind."
     )
     zone: tuple[_Pixels, _Pixels, _Pixels, _Pixels] | None = Field(
         default=None,
         description="The part that is used, in pixels of the photo; null for all of it.",
-        json_schema_extra={
-            "allowed": f"x, y, width, height in pixels, the last two at least {SMALLEST_ZONE}"
-        },
+        json_schema_extra={"allowed": f"x, y, width, height in pixels, the last two at least {SMALLEST_ZONE}"},
     )
     resolution: int = Field(
         default=192,
@@ -70,9 +66,7 @@ class PhotoSetup(Record):
     @model_validator(mode="after")
     def _usable(self) -> PhotoSetup:
         if self.skimage is not None and self.skimage not in NAMES:
-            raise ValueError(
-                f"there is no photo {self.path[:60]!r}; {nearest(self.skimage, list(NAMES))}"
-            )
+            raise ValueError(f"there is no photo {self.path[:60]!r}; {nearest(self.skimage, list(NAMES))}")
         if self.zone and min(self.zone[2:]) < SMALLEST_ZONE:
             size = f"{self.zone[2]} x {self.zone[3]}"
             raise ValueError(f"the zone is {size} pixels; it has to be at least {SMALLEST_ZONE} each way")
@@ -82,9 +76,7 @@ class PhotoSetup(Record):
 class ProxySetup(Record):
     """The simple shape that stands for the object: `size` None means the kind's own (see `extent`)."""
 
-    kind: ShapeKind = Field(
-        default="plane", description="The kind of shape; a plane faces the camera."
-    )
+    kind: ShapeKind = Field(default="plane", description="The kind of shape; a plane faces the camera.")
     mesh: Path | None = Field(default=None, description="The mesh file, for the kind mesh only.")
     size: Vector | None = Field(
         default=None,
@@ -119,12 +111,9 @@ class ProxySetup(Record):
         if not self.row.of_file and self.mesh is not None:
             raise ValueError(f'a mesh file is given but the kind is "{self.kind}"; set proxy.kind to "mesh"')
         thick = 2 if self.row.flat else 3  # a plane has no depth
-        if self.size and not (
-            min(self.size[:thick]) > 0 and self.size[2] >= 0 and max(self.size) <= FURTHEST
-        ):
+        if self.size and not (min(self.size[:thick]) > 0 and self.size[2] >= 0 and max(self.size) <= FURTHEST):
             raise ValueError(
-                f"the size {','.join(f'{v:g}' for v in self.size)} has to be over 0 and at most"
-                f" {FURTHEST:g} scene units each way"
+                f"the size {','.join(f'{v:g}' for v in self.size)} has to be over 0 and at most {FURTHEST:g} scene units each way"
             )
         if refused := self.row.refused(self.extent):
             raise ValueError(refused)
@@ -134,9 +123,7 @@ class ProxySetup(Record):
 class CameraSetup(Record):
     """A camera on the z axis that looks along -z, y up."""
 
-    kind: Literal["orthographic", "perspective"] = Field(
-        default="orthographic", description="The projection."
-    )
+    kind: Literal["orthographic", "perspective"] = Field(default="orthographic", description="The projection.")
     field_of_view: float = Field(
         default=DEFAULT_FIELD_OF_VIEW,
         ge=1,
@@ -165,12 +152,12 @@ class CameraSetup(Record):
 class FitSettings(Record):
     """How the search is done."""
 
-    solver: Literal["default", "paper"] = Field(
-        default="default", description="Ours, or the one of GD10 section 7."
-    )
+    solver: Literal["default", "paper"] = Field(default="default", description="Ours, or the one of GD10 section 7.")
     metric: str = Field(default="combined", min_length=1, description="The distance that is minimised.")
     evaluations: int | None = Field(
-        default=None, ge=1, le=1_000_000,
+        default=None,
+        ge=1,
+        le=1_000_000,
         description="The most pictures that are rendered; null: the solver's own number.",
     )
     time_limit: float | None = Field(
@@ -180,9 +167,7 @@ class FitSettings(Record):
         json_schema_extra={"unit": "seconds"},
         description="The longest time for the search, in seconds; null for no limit.",
     )
-    seeds: int = Field(
-        default=2, ge=1, le=16, description="Noise seeds compared at once, so that none is overfitted."
-    )
+    seeds: int = Field(default=2, ge=1, le=16, description="Noise seeds compared at once, so that none is overfitted.")
     specular: bool = Field(default=True, description="Whether the surface may have a highlight.")
     library: str = Field(
         default="auto", min_length=1, max_length=4096,
@@ -194,9 +179,7 @@ class Setup(Record):
     """All that a fit needs besides the photo's pixels."""
 
     photo: PhotoSetup = Field(description="The photo.", json_schema_extra={"allowed": "a table with path"})
-    mask: Path | None = Field(
-        default=None, description="A picture whose white pixels are used; null for all."
-    )
+    mask: Path | None = Field(default=None, description="A picture whose white pixels are used; null for all.")
     proxy: ProxySetup = Field(default_factory=ProxySetup, description="The shape in the photo.")
     camera: CameraSetup = Field(default_factory=CameraSetup, description="The camera.")
     light: Light = Field(
@@ -224,9 +207,7 @@ class Setup(Record):
     )
     fit: FitSettings = Field(default_factory=FitSettings, description="How the search is done.")
     seed: int = Field(default=0, ge=0, le=LARGEST_SEED, description="The root of every random number.")
-    output: Path | None = Field(
-        default=None, description="The folder for results; null: one named by the photo."
-    )
+    output: Path | None = Field(default=None, description="The folder for results; null: one named by the photo.")
 
     @property
     def medium(self) -> bool:

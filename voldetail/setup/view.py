@@ -63,8 +63,14 @@ def view_of(camera: CameraSetup, photo_shape: tuple[int, int], zone: Zone | None
     # A camera moved along its axis sees another width at the origin; the window scales with it.
     zoom = distance * math.tan(math.radians(camera.field_of_view) / 2) if perspective else 1.0
     return View(
-        left=left * zoom, right=(left + w * unit) * zoom, bottom=(top - h * unit) * zoom, top=top * zoom,
-        columns=max(1, round(w * factor)), rows=max(1, round(h * factor)), distance=distance, perspective=perspective,
+        left=left * zoom,
+        right=(left + w * unit) * zoom,
+        bottom=(top - h * unit) * zoom,
+        top=top * zoom,
+        columns=max(1, round(w * factor)),
+        rows=max(1, round(h * factor)),
+        distance=distance,
+        perspective=perspective,
     )
 
 

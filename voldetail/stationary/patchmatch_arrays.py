@@ -69,9 +69,7 @@ def squared_difference(
 
 
 @dr.syntax
-def voted(
-    field: UInt32, field_width: UInt32, at: UInt32, source: Float, source_width: UInt32, weights: Float
-) -> Array4f:
+def voted(field: UInt32, field_width: UInt32, at: UInt32, source: Float, source_width: UInt32, weights: Float) -> Array4f:
     """Weighted mean of what all patches over a tile's pixel say about it: pixel `at` of the wrapped `field`.
 
     `field` holds the first pixel of the source patch that belongs to each pixel of the tile, `weights` (PATCH,) are

@@ -41,9 +41,7 @@ class Source:
         free = ndimage.minimum_filter(use.astype(np.uint8), size=PATCH, origin=-(PATCH // 2), mode="constant").astype(bool)
         free[height - PATCH + 1 :], free[:, width - PATCH + 1 :] = False, False
         if not free.any():
-            raise InputError(
-                f"The mask leaves no place for a patch of {PATCH} x {PATCH} pixels; paint larger parts of it white."
-            )
+            raise InputError(f"The mask leaves no place for a patch of {PATCH} x {PATCH} pixels; paint larger parts of it white.")
         self.free, self.shape = free, (height, width)
         self.patches = np.flatnonzero(free).astype(np.uint32)
         self.spread = float(picture[use].var(axis=0, dtype=np.float64).sum())

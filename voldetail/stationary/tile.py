@@ -189,9 +189,7 @@ class _Maker:
         tile = match_histogram(tile, self.example.quantiles, self.alpha * (1 - done / max(self.planned - 1, 1)))
         if self.measure is not None:
             tile = project(tile, self.measure, self._sigma(level), level.spacing)
-        self.field, _ = search(
-            tile, self.example.source, self.field, rng=self.rng, sweep=done, uniformity=self.uniformity
-        )
+        self.field, _ = search(tile, self.example.source, self.field, rng=self.rng, sweep=done, uniformity=self.uniformity)
         self.tile = vote(self.field, self.example.lab, SEARCH_SIGMA)
 
     def _sigma(self, level: Level) -> float | NDArray[np.float64]:

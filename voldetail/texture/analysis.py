@@ -81,9 +81,9 @@ def principal_axes(colours: NDArray[np.float32]) -> Floats:
     middle = colours.mean(axis=0, dtype=np.float64)
     centred = colours - middle.astype(np.float32)
     # Blocks of single-precision products, summed in double: exact to 1e-7 of the variance, at a third of the time.
-    covariance = sum(
-        (part.T @ part).astype(np.float64) for part in np.array_split(centred, max(1, len(centred) // 4096))
-    ) / len(centred)
+    covariance = sum((part.T @ part).astype(np.float64) for part in np.array_split(centred, max(1, len(centred) // 4096))) / len(
+        centred
+    )
     values, vectors = np.linalg.eigh(covariance)
     first, second = vectors[:, 2], vectors[:, 1]
     if values[2] < CONSTANT**2:
@@ -104,7 +104,10 @@ def _facing(vector: Floats) -> Floats:
 
 
 def _channel(
-    values: NDArray[np.float32], inside: NDArray[np.bool_] | None, shape: tuple[int, int], match_histogram: bool,
+    values: NDArray[np.float32],
+    inside: NDArray[np.bool_] | None,
+    shape: tuple[int, int],
+    match_histogram: bool,
     directed: bool | None,
 ) -> ColourChannel:
     mean, deviation = float(values.mean(dtype=np.float64)), float(values.std(dtype=np.float64))
@@ -150,9 +153,7 @@ def pixels_of(photo: ArrayLike) -> NDArray[np.float32]:
     return pixels
 
 
-def _checked(
-    photo: ArrayLike, mask: ArrayLike | None
-) -> tuple[NDArray[np.float32], NDArray[np.bool_] | None]:
+def _checked(photo: ArrayLike, mask: ArrayLike | None) -> tuple[NDArray[np.float32], NDArray[np.bool_] | None]:
     pixels = pixels_of(photo)
     rows, columns = pixels.shape[:2]
     if min(rows, columns) < SMALLEST_SIDE:

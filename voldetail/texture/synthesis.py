@@ -51,7 +51,11 @@ LEAST_SHARE = 1e-4
 
 
 def colour_at(
-    texture: Texture, points: tuple[Any, ...], footprint: Any = 0.0, *, first: Any = None,
+    texture: Texture,
+    points: tuple[Any, ...],
+    footprint: Any = 0.0,
+    *,
+    first: Any = None,
     normals: tuple[Any, ...] | None = None,
 ) -> tuple[Any, Any, Any]:
     """Return the linear colour, three Dr.Jit floats in 0 to 1, at ``points`` in texels of the analysed photo.

@@ -33,7 +33,12 @@ eighth of its side at most."""
 
 
 def synthesise(
-    photo: Picture, size: tuple[int, int], *, seed: int = 0, iterations: int = ITERATIONS, levels: int = LEVELS,
+    photo: Picture,
+    size: tuple[int, int],
+    *,
+    seed: int = 0,
+    iterations: int = ITERATIONS,
+    levels: int = LEVELS,
     orientations: int = ORIENTATIONS,
 ) -> Picture:
     """Return a texture of `size` = (rows, columns) like `photo` (H, W, 3), both linear light of 0 to 1.
@@ -47,9 +52,7 @@ def synthesise(
     mean, axes = decorrelated(encoded)
     channels = (encoded - mean) @ axes
     rng = np.random.default_rng(seed)
-    made = [
-        _channel(channels[..., c], rng.standard_normal(size), iterations, levels, orientations) for c in range(3)
-    ]
+    made = [_channel(channels[..., c], rng.standard_normal(size), iterations, levels, orientations) for c in range(3)]
     colours = np.stack(made, axis=-1) @ axes.T + mean
     return to_linear(np.clip(colours, 0, 1))
 

@@ -33,12 +33,8 @@ class _Picture:
 def compare(
     first: Annotated[str, typer.Argument(metavar="A", help="The reference: a photo or picture.")],
     second: Annotated[str, typer.Argument(metavar="B", help="What is compared with it.")],
-    mask: Annotated[
-        Path | None, typer.Option(help="White is used, of both; then both need the mask's size.")
-    ] = None,
-    metric: Annotated[
-        str, typer.Option(help="combined, published (GD10's), or one ingredient.")
-    ] = "combined",
+    mask: Annotated[Path | None, typer.Option(help="White is used, of both; then both need the mask's size.")] = None,
+    metric: Annotated[str, typer.Option(help="combined, published (GD10's), or one ingredient.")] = "combined",
     resolution: Annotated[
         int | None,
         typer.Option(min=32, max=2000, help="Shrink both so that the longest side has this many pixels."),
@@ -79,9 +75,7 @@ def _read(name: str, mask: Path | None, resolution: int | None) -> _Picture:
         light = resize(light, shape)
         used = None if used is None else resize_mask(used, shape)
     if light.size > MOST_PIXELS:
-        raise InputError(
-            f"{name} has {columns} x {rows} pixels, too many to compare; give --resolution, e.g. 1000."
-        )
+        raise InputError(f"{name} has {columns} x {rows} pixels, too many to compare; give --resolution, e.g. 1000.")
     return _Picture(name, light, used)
 
 
@@ -109,16 +103,12 @@ def _total(parts: dict[str, float]) -> float:
 
 def _print(record: dict[str, Any]) -> None:
     halves = record["halves_of_a"]
-    table = Table(
-        title=f"{record['a']} against {record['b']}, metric {record['metric']}", title_justify="left"
-    )
+    table = Table(title=f"{record['a']} against {record['b']}, metric {record['metric']}", title_justify="left")
     table.add_column("part")
     table.add_column("A against B", justify="right")
     table.add_column("A's halves", justify="right")
     for part, value in record["parts"].items():
         table.add_row(part, f"{value:.4g}", "" if halves is None else f"{halves['parts'].get(part, 0.0):.4g}")
     table.add_section()
-    table.add_row(
-        "M, all together", f"{record['distance']:.4g}", "" if halves is None else f"{halves['distance']:.4g}"
-    )
+    table.add_row("M, all together", f"{record['distance']:.4g}", "" if halves is None else f"{halves['distance']:.4g}")
     output().print(table)

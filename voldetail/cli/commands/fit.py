@@ -29,13 +29,12 @@ def fit(
     light: Annotated[
         Word,
         setting(
-            "light", panel=SCENE,
+            "light",
+            panel=SCENE,
             words=f"{FORMS} (azimuth counter-clockwise from the right, elevation above the picture; estimated for flat surfaces)",
         ),
     ] = None,
-    proxy: Annotated[
-        Word, setting("proxy.kind", panel=SCENE, words=f"{SHAPE_WORDS} or a mesh file", convert=proxy_of)
-    ] = None,
+    proxy: Annotated[Word, setting("proxy.kind", panel=SCENE, words=f"{SHAPE_WORDS} or a mesh file", convert=proxy_of)] = None,
     rotation: Annotated[Word, setting("proxy.rotation", panel=SCENE, words="X,Y,Z", convert=rotation_of)] = None,
     camera: Annotated[Word, setting("camera.kind", panel=SCENE, words="orthographic or perspective")] = None,
     fov: Annotated[float | None, setting("camera.field_of_view", panel=SCENE)] = None,
@@ -47,9 +46,7 @@ def fit(
     mask: Annotated[Word, setting("mask", panel=WHERE)] = None,
     zone: Annotated[Word, setting("photo.zone", panel=WHERE, words="X,Y,WIDTH,HEIGHT in pixels", convert=zone_of)] = None,
     resolution: Annotated[int | None, setting("photo.resolution", panel=WHERE)] = None,
-    stationarize: Annotated[
-        bool | None, setting("photo.stationarize", "--stationarize/--as-it-is", panel=WHERE)
-    ] = None,
+    stationarize: Annotated[bool | None, setting("photo.stationarize", "--stationarize/--as-it-is", panel=WHERE)] = None,
     output: Annotated[Word, setting("output", "--output", "-o", panel=WHERE)] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier fit.", rich_help_panel=WHERE)] = False,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with an interrupted fit.", rich_help_panel=WHERE)] = False,
@@ -120,8 +117,14 @@ def run(place: FitFolder, *, resume: bool) -> None:
             place.save_state(state, picture.sha256)
 
         fitted = search(
-            place.setup, photo=picture, start=start, light_guess=guess, on_progress=on_progress, on_state=on_state,
-            on_target=on_target, on_remark=lambda sentence: console.print(sentence, markup=False, soft_wrap=True),
+            place.setup,
+            photo=picture,
+            start=start,
+            light_guess=guess,
+            on_progress=on_progress,
+            on_state=on_state,
+            on_target=on_target,
+            on_remark=lambda sentence: console.print(sentence, markup=False, soft_wrap=True),
             on_library_progress=teller(view, [], "reliefs for lights at this elevation, made once: "),
         )
         place.begin(keep=start is not None)  # a resumed fit that was complete reports no progress

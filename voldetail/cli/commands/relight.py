@@ -23,9 +23,7 @@ def relight(
     detail: DetailFile,
     azimuth: Annotated[
         str,
-        typer.Option(
-            help="Degrees: one, a list as 0,90, or START:STOP:COUNT steps without STOP, as 0:360:12."
-        ),
+        typer.Option(help="Degrees: one, a list as 0,90, or START:STOP:COUNT steps without STOP, as 0:360:12."),
     ],
     elevation: Annotated[str, typer.Option(help="Degrees above the picture, over 0 to 90 (-90 to 90 for a medium); as azimuth.")],
     folder: Annotated[Path, typer.Option("--output", "-o", help="The folder for the pictures.")],
@@ -73,9 +71,7 @@ def relight(
     )  # fmt: skip
 
 
-def _write_frames(
-    folder: Path, earlier: list[Path], frames: Any, count: int, animation: str, name: str
-) -> None:
+def _write_frames(folder: Path, earlier: list[Path], frames: Any, count: int, animation: str, name: str) -> None:
     """Write each frame as it comes, then the sheet and the animation."""
     from voldetail.image import save_png
     from voldetail.report import write_animation, write_contact_sheet
@@ -105,11 +101,7 @@ def _animation_name(animation: str, count: int) -> str | None:
 def _free_folder(folder: Path, force: bool) -> list[Path]:
     """Check the folder for the frames; return the frames of an earlier run in it, which ``force`` lets go."""
     check_folder(folder)
-    earlier = sorted(
-        p for p in folder.glob("*") if p.name.startswith(("frame-", "animation.")) or p.name == "sheet.png"
-    )
+    earlier = sorted(p for p in folder.glob("*") if p.name.startswith(("frame-", "animation.")) or p.name == "sheet.png")
     if earlier and not force:
-        raise InputError(
-            f"{folder} holds {earlier[0].name} already; give --force to replace it, or another folder."
-        )
+        raise InputError(f"{folder} holds {earlier[0].name} already; give --force to replace it, or another folder.")
     return earlier

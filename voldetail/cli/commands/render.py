@@ -21,22 +21,14 @@ def render(
     detail: DetailFile,
     shape: Annotated[str, typer.Argument(metavar="MESH", help=MESH_HELP)],
     out: Annotated[Path, typer.Option("--output", "-o", help="The picture: .png, .jpg or .exr (linear).")],
-    light: Annotated[
-        str | None, typer.Option(help=f"{RENDER_LIGHTS}. Default: 135,45.")
-    ] = None,
-    envmap: Annotated[
-        Path | None, typer.Option(help="Light from an environment map (.exr or .hdr) instead.")
-    ] = None,
+    light: Annotated[str | None, typer.Option(help=f"{RENDER_LIGHTS}. Default: 135,45.")] = None,
+    envmap: Annotated[Path | None, typer.Option(help="Light from an environment map (.exr or .hdr) instead.")] = None,
     scale: Scale = 1.0,
     pixels: Annotated[str, typer.Option("--size", help="WIDTHxHEIGHT in pixels.")] = "640x480",
-    shading: Annotated[
-        str, typer.Option(help="phong (as fitted) or principled (physically based).")
-    ] = "phong",
+    shading: Annotated[str, typer.Option(help="phong (as fitted) or principled (physically based).")] = "phong",
     rotation: Rotation = None,
     fov: Fov = None,
-    samples: Annotated[
-        int, typer.Option(min=1, max=65536, help="Samples a pixel, for --envmap and principled.")
-    ] = 64,
+    samples: Annotated[int, typer.Option(min=1, max=65536, help="Samples a pixel, for --envmap and principled.")] = 64,
     subsamples: Subsamples = 2,
     background: Background = "0",
 ) -> None:

@@ -51,9 +51,7 @@ def retrieve(
     swap: Annotated[bool, typer.Option("--swap/--no-swap", help="Whether the two tones may change places.")] = True,
     sheet: Annotated[Path | None, typer.Option("--output", "-o", help="A sheet of the photo and the answers, .png.")] = None,
     answers: Annotated[Path | None, typer.Option(help="A file for the answers, .json, as --json prints them.")] = None,
-    texture: Annotated[
-        Path | None, typer.Option(help="The first answer as a texture file, .json, for texture render.")
-    ] = None,
+    texture: Annotated[Path | None, typer.Option(help="The first answer as a texture file, .json, for texture render.")] = None,
 ) -> None:
     """Find the procedural textures nearest to a photo, with their parameters and two tones.
 
@@ -185,9 +183,7 @@ def _table(rows: Sequence[tuple[str, Answer]], heading: str) -> Table:
     return table
 
 
-def _record(
-    photo: str, asked: Query, found: Ranking, novelty: Novelty | None, said: list[str]
-) -> dict[str, Any]:
+def _record(photo: str, asked: Query, found: Ranking, novelty: Novelty | None, said: list[str]) -> dict[str, Any]:
     """The answers as what JSON holds."""
     rows, columns = asked.photo.shape[:2]
     return {

@@ -57,6 +57,4 @@ def stationarity(
                 save_image(heat, coloured(found.map, picture))
     output().print(table)
     where = f"  {heat}" if heat else ""
-    result(
-        {"measures": measures, "sigma": width, "heat": str(heat) if heat else None}, f"sigma {width:.3g} pixels{where}"
-    )
+    result({"measures": measures, "sigma": width, "heat": str(heat) if heat else None}, f"sigma {width:.3g} pixels{where}")

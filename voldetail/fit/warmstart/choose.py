@@ -19,13 +19,27 @@ from voldetail.results import Target
 from voldetail.setup.setup import Setup
 from voldetail.setup.view import view_of
 
+FEWEST_FOR_LIBRARY = 500
+"""Evaluations below which a library is not made for a fit: that takes longer than the fit."""
+
 TOP = 160
 """Starts that a fit compares itself: among the nearest hundred the library's order says nothing more (rank correlation with the
 fit's own comparison 0.1 on 14 photographs), and comparing one takes 10 ms."""
 
 
+def takes_starts(setup: Setup) -> bool:
+    """Whether a fit of ``setup`` is told where to start: the default one of a relief, unless it is to be a short one."""
+    settings = setup.fit
+    usual = setup.mode == "displacement" and settings.solver == "default" and settings.metric == "combined"
+    short = settings.library == "auto" and settings.evaluations is not None and settings.evaluations < FEWEST_FOR_LIBRARY
+    return usual and not short and settings.library != "none"
+
+
 def starts_from(
-    setup: Setup, target: Target, *, on_progress: Callable[[BuildProgress], None] = lambda progress: None,
+    setup: Setup,
+    target: Target,
+    *,
+    on_progress: Callable[[BuildProgress], None] = lambda progress: None,
     on_remark: Callable[[str], None] = lambda sentence: None,
 ) -> tuple[Start, ...]:
     """Return where a fit of ``setup`` may start: the reliefs of its library nearest to the photo under its light.

@@ -43,9 +43,7 @@ def nearest_reliefs(target: Target, setup: Setup, series: Series, top: int) -> t
     # One row of distances for each side of the light; the same order on every machine where two are equal.
     apart = np.stack([_distances(asked.mirrored() if mirrored else asked, vectors) * penalties for mirrored in MIRRORS])
     order = np.argsort(apart.ravel(), kind="stable")[:top]
-    best = tuple(
-        NearRelief(int(k) % len(reliefs), MIRRORS[int(k) // len(reliefs)], float(apart.ravel()[k])) for k in order
-    )
+    best = tuple(NearRelief(int(k) % len(reliefs), MIRRORS[int(k) // len(reliefs)], float(apart.ravel()[k])) for k in order)
     window = max(view.rows, view.columns) * view.pixel
     return best, tuple(seen_through(reliefs[f.number], window, azimuth, f.mirrored) for f in best)
 

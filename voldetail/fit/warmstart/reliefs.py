@@ -80,9 +80,7 @@ def seen_through(relief: LibraryRelief, window: float, turned: float, mirrored: 
 
     mirrored: on the other side of the light's direction.
     """
-    values = {
-        name: SPACE.at(name, float(unit)) for name, unit in zip(SPACE.names(relief.kind), relief.vector, strict=True)
-    }
+    values = {name: SPACE.at(name, float(unit)) for name, unit in zip(SPACE.names(relief.kind), relief.vector, strict=True)}
     for name in LENGTHS:
         if name in values:
             values[name] *= WINDOW / window

@@ -68,9 +68,7 @@ class Cylinder(Primitive):
         return signed_distance.cylinder((float(self.half[0]), float(self.half[1]), float(self.half[2])))
 
 
-def _cut_across(
-    positions: Floats, normals: Floats, faces: np.ndarray, rows: int
-) -> tuple[Floats, Floats, np.ndarray]:
+def _cut_across(positions: Floats, normals: Floats, faces: np.ndarray, rows: int) -> tuple[Floats, Floats, np.ndarray]:
     """Return the prism with its upright sides cut into ``rows`` rings of quads; its ends stay as they are."""
     top, bottom = positions[:, 1].max(), positions[:, 1].min()
     upright = np.ptp(positions[faces][:, :, 1], axis=1) > 0

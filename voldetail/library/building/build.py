@@ -43,8 +43,15 @@ class BuildProgress:
 
 
 def build(
-    sources: Sequence[Source], counts: int | Sequence[int], path: str | Path, *, workers: int | None = None,
-    scheduler: str | None = None, chunk: int | None = None, w_global: float = GLOBAL, force: bool = False,
+    sources: Sequence[Source],
+    counts: int | Sequence[int],
+    path: str | Path,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    chunk: int | None = None,
+    w_global: float = GLOBAL,
+    force: bool = False,
     on_progress: Callable[[BuildProgress], None] = lambda progress: None,
 ) -> Path:
     """Build the library ``path`` from so many entries of each source, and return its path.

@@ -161,4 +161,3 @@ def _locked(file: Path, folder: Path) -> int:
         except OSError:
             pass  # some network file systems have none either
     return descriptor
-

@@ -31,9 +31,7 @@ def register_colour() -> str:
     return PLUGIN
 
 
-def colour_dict(
-    texture: Texture, texels_per_unit: float, mapping: str = "solid", footprint: float = 0.0
-) -> dict[str, Any]:
+def colour_dict(texture: Texture, texels_per_unit: float, mapping: str = "solid", footprint: float = 0.0) -> dict[str, Any]:
     """Return the Mitsuba dictionary of a texture at hand. Raises InputError for another mapping, and for a structure whose model
     or parameters are not known or out of range."""
     if isinstance(texture, StructureTexture):
@@ -41,8 +39,11 @@ def colour_dict(
     if mapping not in MAPPINGS:
         raise InputError(f"The mapping {mapping!r} is not known; use {' or '.join(MAPPINGS)}.")
     return {
-        "type": register_colour(), "text": texture_to_text(texture), "texels_per_unit": float(texels_per_unit),
-        "mapping": mapping, "footprint": float(footprint),
+        "type": register_colour(),
+        "text": texture_to_text(texture),
+        "texels_per_unit": float(texels_per_unit),
+        "mapping": mapping,
+        "footprint": float(footprint),
     }
 
 

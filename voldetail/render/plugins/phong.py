@@ -109,9 +109,7 @@ def _plugin(mi: Any) -> type:
         def to_string(self) -> str:
             return f"Phong[diffuse={self.diffuse}, specular={self.specular}, shininess={self.shininess}]"
 
-        def sample(
-            self, ctx: Any, si: Any, sample1: Any, sample2: Any, active: Any = True
-        ) -> tuple[Any, Any]:
+        def sample(self, ctx: Any, si: Any, sample1: Any, sample2: Any, active: Any = True) -> tuple[Any, Any]:
             chance, _ = self._chance_of_diffuse(ctx, si, active)
             take_diffuse = sample1 < chance
             lobe = mi.warp.square_to_cosine_hemisphere(sample2)

@@ -56,9 +56,7 @@ def _fade(t: Any) -> Any:
     return t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 
 
-def octaves(
-    x: Any, y: Any, size: float, seed: int, shape: Any, stretch: float = 1.0, finest: float = FINEST_CELL
-) -> Any:
+def octaves(x: Any, y: Any, size: float, seed: int, shape: Any, stretch: float = 1.0, finest: float = FINEST_CELL) -> Any:
     """Return sum_i 2^-i shape(n(2^i x)) / sum_i 2^-i, for cells of ``size`` texels (``stretch`` times as long along x).
 
     shape: what each octave is passed through. Octaves with cells under half of ``finest`` texels are left out.

@@ -15,8 +15,12 @@ LARGEST_SIDE = 16384
 
 
 def structure(
-    model: StructureModel, values: Values | None = None, size: int | tuple[int, int] = 256, rotation: float = 0.0,
-    seed: int = 0, offset: tuple[float, float] | None = None,
+    model: StructureModel,
+    values: Values | None = None,
+    size: int | tuple[int, int] = 256,
+    rotation: float = 0.0,
+    seed: int = 0,
+    offset: tuple[float, float] | None = None,
 ) -> NDArray[np.float32]:
     """Return the structure map s_a (H, W) in [0, 1] of ``model`` (GKHF14 equation 3), row 0 on top.
 

@@ -25,7 +25,6 @@ PROJECTED = 1_000_000
 """Entries, the largest databases of the paper's table 2 that are sampled at random."""
 
 
-
 def build(
     what: Annotated[
         list[str],
