@@ -13,8 +13,7 @@ from from_code.markdown import code, plain, table
 from from_code.records import allowed
 from voldetail.cli import commands
 from voldetail.cli.app import app
-from voldetail.cli.settings import _KEYS as KEYS
-from voldetail.cli.settings import field_of
+from voldetail.cli.settings import SETTINGS, field_of
 
 _TYPES = {"str": "TEXT", "int": "NUMBER", "float": "NUMBER", "Path": "FILE"}
 _OLDER_TYPES = {"text": "str", "integer": "int", "integer range": "int", "float range": "float", "path": "Path"}
@@ -84,8 +83,8 @@ def _settings(words: str) -> dict[str, FieldInfo]:
         return {}
     module = import_module(".".join([commands.__name__, *words.split()]))
     hints = get_type_hints(getattr(module, words.split()[-1]), include_extras=True)
-    keys = {name: KEYS.get(id(one)) for name, hint in hints.items() for one in getattr(hint, "__metadata__", ())}
-    return {name: field_of(found[0]) for name, found in keys.items() if found is not None and found[1] is None}
+    keys = {name: SETTINGS.get(id(one)) for name, hint in hints.items() for one in getattr(hint, "__metadata__", ())}
+    return {name: field_of(found[1]) for name, found in keys.items() if found is not None and found[2] is None}
 
 
 def _allowed(option: Any, setting: FieldInfo | None) -> str:

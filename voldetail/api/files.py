@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from voldetail.recover.files import load_any
 from voldetail.setup import file as setup_files
 from voldetail.setup.setup import Setup
 
-ENCODINGS = ("auto", "srgb", "linear")
+ENCODINGS = get_args(Encoding)
 
 
 def load_photo(photo: PhotoLike, mask: MaskLike | None = None, *, encoding: Encoding = "auto") -> Photo:

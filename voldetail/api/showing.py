@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Literal
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import get_args
 
 from voldetail import apply, report
 from voldetail.api.inputs import LightLike, ShapeLike, as_light, as_shape, checked_scale
+from voldetail.apply.onmesh import Colour, Picture, Shading
 from voldetail.detail import Detail
 from voldetail.detail.photo_relief import AnyDetail
 from voldetail.errors import InputError
@@ -20,11 +18,8 @@ from voldetail.geometry.density_grid import DensityGrid
 from voldetail.results import FitResult, Gallery
 from voldetail.setup.setup import CameraSetup
 
-Picture = NDArray[np.float32]
-Colour = tuple[float, float, float]
-Shading = Literal["phong", "principled"]
 Rotation = tuple[float, float, float]
-SHADINGS = ("phong", "principled")
+SHADINGS = get_args(Shading)
 UPRIGHT: Rotation = (0.0, 0.0, 0.0)
 
 

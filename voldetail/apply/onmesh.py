@@ -93,7 +93,7 @@ def render(
         # A sky as bright as the ambient term makes it on a matt surface.
         r = detail.reflectance
         emitters = emitters_of(lamp, r.ambient / r.diffuse if r.diffuse > 1e-6 else 0.0)
-    surface = _surface(detail, mesh, view, proxy, whole, scale, edge, tell, _bsdf(detail, shading), emitters, on_progress)
+    surface = _surface(detail, view, proxy, whole, scale, edge, tell, _bsdf(detail, shading), emitters, on_progress)
     if emitters is not None:
         return traced_picture(surface, samples, background)
     return _lit(detail, surface, lamp, subsamples, background)
@@ -127,7 +127,7 @@ def relight(
         surface = place(detail, proxy, view, scale=scale, whole_plane=whole, tell=tell)
         surface.update(detail)
     else:
-        surface = _surface(detail, mesh, view, proxy, whole, scale, PIXELS_AN_EDGE, tell)
+        surface = _surface(detail, view, proxy, whole, scale, PIXELS_AN_EDGE, tell)
     for elevation in elevations:
         for azimuth in azimuths:
             lamp = Lamp(direction=direction_of(azimuth, elevation))
@@ -185,7 +185,6 @@ def proxy_of(mesh: str | Path, rotation: tuple[float, float, float]) -> ProxySet
 
 def _surface(
     detail: AnyDetail,
-    mesh: str | Path,
     view: View,
     proxy: ProxySetup,
     whole_plane: bool,
@@ -204,7 +203,7 @@ def _surface(
         return solid_surface(detail, volume, bsdf=bsdf, emitters=emitters, on_progress=on_progress)
     detail = on_shape(detail, proxy)
     made = make_proxy(proxy, edge * view.pixel, domain_of(detail))
-    surface = MeshSurface(made, view, scale=scale, bsdf=bsdf, emitters=emitters, one_sided_sky=_flat(mesh))
+    surface = MeshSurface(made, view, scale=scale, bsdf=bsdf, emitters=emitters, one_sided_sky=proxy.row.flat)
     surface.update(detail)
     return surface
 

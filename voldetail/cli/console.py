@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 import sys
-import time
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from io import StringIO
 
 from rich.console import Console
@@ -19,13 +18,12 @@ Json = Mapping[str, object]
 @dataclass
 class Manner:
     """How a command speaks. quiet: results and errors alone. verbose: what is decided and how long it took as well. as_json: the
-    result as one JSON text and nothing else on standard output. threads: for rendering, 0 for all. begun: when it was called."""
+    result as one JSON text and nothing else on standard output. threads: for rendering, 0 for all."""
 
     quiet: bool = False
     verbose: bool = False
     as_json: bool = False
     threads: int = 0
-    begun: float = field(default_factory=time.monotonic)
 
 
 MANNER = Manner()

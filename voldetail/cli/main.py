@@ -32,10 +32,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = [word for word in asked if word not in MANNERS]
     debug = "--debug" in asked
     MANNER.quiet, MANNER.verbose, MANNER.as_json = (word in asked for word in ("--quiet", "--verbose", "--json"))
-    MANNER.threads, MANNER.begun = 0, time.monotonic()
+    MANNER.threads, begun = 0, time.monotonic()
     try:
         code = get_command(app).main(given, prog_name="voldetail", standalone_mode=False)
-        explain(f"Done in {time.monotonic() - MANNER.begun:.1f} s.")
+        explain(f"Done in {time.monotonic() - begun:.1f} s.")
         sys.stdout.flush()
         return code if isinstance(code, int) else DONE
     except SystemExit as leaving:  # how the parser ends after a reader went away

@@ -21,10 +21,8 @@ from voldetail.setup.setup import Setup
 Convert = Callable[[str], Mapping[str, object]]
 """From an option's text to settings by key, where it is not itself the one value."""
 
-_KEYS: dict[int, tuple[str, Convert | None]] = {}
-"""By the identity of each option that `setting` made, which lives as long as its command."""
-
-_KEPT: list[OptionInfo] = []
+SETTINGS: dict[int, tuple[OptionInfo, str, Convert | None]] = {}
+"""Each option that `setting` made, with its key, by its identity: kept here, so that no other object takes that."""
 
 
 def field_of(key: str) -> FieldInfo:
@@ -47,19 +45,18 @@ def setting(key: str, *names: str, panel: str, words: str = "", convert: Convert
     """
     sentence = (field_of(key).description or "").rstrip(".")
     made: OptionInfo = typer.Option(*names, help=f"{sentence}{f': {words}' if words else ''}.", rich_help_panel=panel)
-    _KEPT.append(made)
-    _KEYS[id(made)] = key, convert
+    SETTINGS[id(made)] = made, key, convert
     return made
 
 
 def given(command: Callable[..., None], values: Mapping[str, object]) -> Iterator[Given]:
     """Yield what the user gave of the settings of ``command``, by the ``values`` of its parameters (None: not given)."""
     for name, hint in get_type_hints(command, include_extras=True).items():
-        option = next((one for one in getattr(hint, "__metadata__", ()) if id(one) in _KEYS), None)
+        found = next((SETTINGS[id(one)] for one in getattr(hint, "__metadata__", ()) if id(one) in SETTINGS), None)
         value = values.get(name)
-        if option is None or value is None:
+        if found is None or value is None:
             continue
-        key, convert = _KEYS[id(option)]
+        option, key, convert = found
         typed = next((word for word in option.param_decls or () if word.startswith("--")), f"--{name.replace('_', '-')}")
         source = f"{typed.split('/')[0]} {printable(str(value))}"
         for place, one in (convert(str(value)) if convert else {key: value}).items():

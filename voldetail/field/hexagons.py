@@ -6,7 +6,7 @@ sharper weights of Mikkelsen, "Practical real-time hex-tiling" (2022).
 Symbols
     v_k   the three corners of the triangle of the lattice that a point lies in
     b_k   its barycentric coordinates there, sum 1
-    w_k   b_k^SHARPNESS, divided by their sum: the larger the exponent, the less of the plane is a mixture
+    w_k   b_k^4, divided by their sum: the larger the exponent, the less of the plane is a mixture. Looked at on gravel alone
     m_k   where in the picture the corner's part is taken from, hashed
     g_k   the Gaussian score of the picture at m_k + (x - v_k)
     g     sum_k w_k g_k / sqrt(sum_k w_k^2), of the same mean (0) and variance as each g_k
@@ -20,10 +20,6 @@ from typing import Any
 import drjit as dr
 
 from voldetail.noise.lattice import UNIT_24, cell_hash
-
-SHARPNESS = 4
-"""Exponent of the weights. Tuned on gravel, bark and grass: with 1 (the first paper's) stones that lie over each other are seen
-through each other, from 8 on the borders of the parts are seen."""
 
 EDGE_SHARE = 0.3
 """Edge of the lattice's triangles over the shorter side of the picture: a part reaches one edge from its corner, and so twice
@@ -46,7 +42,7 @@ def corners(x: Any, y: Any, edge: Any) -> tuple[list[tuple[Any, Any]], list[Any]
     weights = [dr.select(upper, 1.0 - v, u), dr.select(upper, 1.0 - u, v), dr.abs(1.0 - u - v)]
     i, j = int_type(first), int_type(second)
     places = [(i + 1, j), (i, j + 1), (dr.select(upper, i + 1, i), dr.select(upper, j + 1, j))]
-    sharp = [dr.square(dr.square(w)) if SHARPNESS == 4 else dr.power(w, SHARPNESS) for w in weights]
+    sharp = [dr.square(dr.square(w)) for w in weights]
     total = 1.0 / (sharp[0] + sharp[1] + sharp[2])
     words = [(dr.reinterpret_array(uint_type, a), dr.reinterpret_array(uint_type, b)) for a, b in places]
     return words, [w * total for w in sharp]

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import zoom
-from scipy.special import ndtr
 
 from voldetail.detail.parameters import LUMINANCE_WEIGHTS
 from voldetail.detail.photo_relief import MappedDetail
+from voldetail.texture.analysis import principal_axes
+from voldetail.texture.gaussian import gaussianise
 
 CHANNELS = 4
 QUANTILES = 256
@@ -51,7 +52,7 @@ def scores_of(detail: MappedDetail, spacing: float) -> Scores:
     plain = np.concatenate([_averaged(detail.height[..., None], factor), _averaged(detail.albedo, factor)], axis=-1)
     colour = plain[..., 1:].reshape(-1, 3).astype(np.float64)
     mean = colour.mean(axis=0)
-    _, axes = np.linalg.eigh(np.cov((colour - mean).T))
+    axes = principal_axes(plain[..., 1:].reshape(-1, 3)).T
     turned = np.concatenate([plain[..., :1].reshape(-1, 1), (colour - mean) @ axes], axis=1)
     scores, quantiles = zip(*(_gaussian(turned[:, c]) for c in range(CHANNELS)), strict=True)
     values = np.stack(scores, axis=-1).reshape(plain.shape).astype(np.float32)
@@ -70,13 +71,8 @@ def _averaged(values: NDArray[np.float32], factor: int) -> NDArray[np.float32]:
     return np.asarray(blocks.mean(axis=(1, 3)), np.float32)
 
 
-def _gaussian(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _gaussian(values: NDArray[np.float64]) -> tuple[NDArray[np.floating], NDArray[np.float64]]:
     """Return the normal deviates of ``values`` (N,), by ranks, and their quantiles at equally spaced deviates."""
-    places = np.linspace(-FARTHEST, FARTHEST, QUANTILES)
     if values.std() < FLATTEST:
         return np.zeros(len(values)), np.full(QUANTILES, values.mean())
-    ordered = np.sort(values)
-    quantiles = np.quantile(ordered, ndtr(places), method="hazen")
-    # Through the same quantiles back: what is looked up unmixed is the value that it was.
-    unique, first = np.unique(quantiles, return_index=True)
-    return np.interp(values, unique, places[first]), quantiles
+    return gaussianise(values, np.linspace(-FARTHEST, FARTHEST, QUANTILES))

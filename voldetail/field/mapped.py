@@ -19,11 +19,11 @@ import drjit as dr
 from voldetail.detail.photo_relief import MappedDetail
 from voldetail.field.hexagons import EDGE_SHARE, corners, hashed_place, offset_from
 from voldetail.field.map_scores import CHANNELS, QUANTILES, Scores, scores_of
-from voldetail.noise.triplanar import PLANES
+from voldetail.noise.triplanar import PLANES, plane_weights
 from voldetail.noise.wavelet import held
 
 LEAST_WEIGHT = 1e-4
-"""Weight of a plane below which its maps are not looked up."""
+"""Weight of a plane, of the largest, below which its maps are not looked up."""
 
 Points = tuple[Any, ...]
 
@@ -54,16 +54,16 @@ class MapField:
         """Return height, red, green and blue at ``points`` (scene units): from three sides where there are ``normals``."""
         total: list[Any] = [self.float_type(0.0)] * CHANNELS
         squares: Any = self.float_type(0.0)
+        edge = EDGE_SHARE * min(self.rows, self.columns)
         if normals is None:
             planes = [(0, self.float_type(1.0), points[0], points[1])]
         else:
             planes = [
                 (plane, weight, points[first], points[second])
-                for plane, (weight, (first, second)) in enumerate(zip(_weights(normals), PLANES, strict=True))
+                for plane, (weight, (first, second)) in enumerate(zip(plane_weights(normals), PLANES, strict=True))
             ]
         for plane, weight, x, y in planes:
             seen = weight > LEAST_WEIGHT
-            edge = EDGE_SHARE * min(self.rows, self.columns)
             column, row = x * self.per_unit, -y * self.per_unit
             words, shares = corners(column, row, edge)
             for word, share in zip(words, shares, strict=True):
@@ -140,14 +140,3 @@ def mapped_relief_and_albedo(
 def map_field(detail: MappedDetail, spacing: float, float_type: Any) -> MapField:
     """Return the detail's `MapField`, made once."""
     return MapField(detail, spacing, float_type)
-
-
-def _weights(normal: Points) -> list[Any]:
-    """Return the three planes' weights, sum 1; a zero normal counts as (0, 0, 1)."""
-    size = dr.maximum(dr.maximum(dr.abs(normal[0]), dr.abs(normal[1])), dr.abs(normal[2]))
-    flat = size == 0.0
-    parts = [a / dr.select(flat, 1.0, size) for a in normal[:2]]
-    parts.append(dr.select(flat, 1.0, normal[2] / dr.select(flat, 1.0, size)))
-    weights = [dr.square(dr.square(a)) for a in parts]
-    total = 1.0 / (weights[0] + weights[1] + weights[2])
-    return [w * total for w in weights]

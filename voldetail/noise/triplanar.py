@@ -34,12 +34,7 @@ def triplanar(
 
     The normal need not have length one; a zero normal counts as (0, 0, 1). ``seed`` and ``footprint`` as in `lobe_noise`.
     """
-    size = dr.maximum(dr.maximum(dr.abs(normal[0]), dr.abs(normal[1])), dr.abs(normal[2]))
-    flat = size == 0.0
-    # Divided by the largest part first: the fourth power of a short normal would underflow.
-    parts = [a / dr.select(flat, 1.0, size) for a in normal[:2]]
-    parts.append(dr.select(flat, 1.0, normal[2] / dr.select(flat, 1.0, size)))
-    weights = [dr.square(dr.square(a)) for a in parts]
+    weights = plane_weights(normal)
     scale = 1.0 / dr.sqrt(sum(dr.square(w) for w in weights))
     total, left = 0.0, 0.0
     for plane, (weight, (first, second)) in enumerate(zip(weights, PLANES, strict=True)):
@@ -48,3 +43,16 @@ def triplanar(
         total = dr.fma(weight * scale, value, total)
         left = dr.fma(dr.square(weight * scale), remaining, left)
     return total, left
+
+
+def plane_weights(normal: tuple[Any, Any, Any]) -> list[Any]:
+    """Return w_i for the planes at right angles to axis 0, 1, 2, the largest of them 1.
+
+    The normal need not have length one; a zero normal counts as (0, 0, 1).
+    """
+    size = dr.maximum(dr.maximum(dr.abs(normal[0]), dr.abs(normal[1])), dr.abs(normal[2]))
+    flat = size == 0.0
+    # Divided by the largest part first: the fourth power of a short normal would underflow.
+    parts = [a / dr.select(flat, 1.0, size) for a in normal[:2]]
+    parts.append(dr.select(flat, 1.0, normal[2] / dr.select(flat, 1.0, size)))
+    return [dr.square(dr.square(a)) for a in parts]

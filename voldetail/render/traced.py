@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from voldetail.backend import mitsuba
-from voldetail.setup.lamp import Lamp
+from voldetail.setup.lamp import Lamp, rgb
 from voldetail.setup.view import View
 
 BOUNCES = 4
@@ -40,5 +40,4 @@ def path_integrator() -> Any:
 
 def emitters_of(lamp: Lamp, sky: float, tint: tuple[float, ...] = (1.0, 1.0, 1.0)) -> dict[str, Any]:
     """Return Mitsuba emitters for a lamp and a uniform sky of radiance ``sky``, both of the colour ``tint``."""
-    radiance = {"type": "rgb", "value": [sky * c for c in tint]}
-    return {"sky": {"type": "constant", "radiance": radiance}, "light": lamp.emitter(tint)}
+    return {"sky": {"type": "constant", "radiance": rgb(sky, tint)}, "light": lamp.emitter(tint)}

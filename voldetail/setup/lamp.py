@@ -92,9 +92,9 @@ class Lamp:
         if self.position is None:
             return {
                 "type": "directional", "direction": [-v for v in self.source],
-                "irradiance": _rgb(math.pi * self.strength, tint),
+                "irradiance": rgb(math.pi * self.strength, tint),
             }  # fmt: skip
-        intensity = _rgb(math.pi * self.strength * self.position[2] ** 2, tint)
+        intensity = rgb(math.pi * self.strength * self.position[2] ** 2, tint)
         if self.axis is None:
             return {"type": "point", "position": list(self.position), "intensity": intensity}
         half = math.degrees(self.cone)
@@ -104,7 +104,8 @@ class Lamp:
         }  # fmt: skip
 
 
-def _rgb(value: float, tint: tuple[float, ...]) -> dict[str, Any]:
+def rgb(value: float, tint: tuple[float, ...]) -> dict[str, Any]:
+    """Return Mitsuba's dictionary for a light or colour of ``value`` in each channel of ``tint``."""
     return {"type": "rgb", "value": [value * c for c in tint]}
 
 
