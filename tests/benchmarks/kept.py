@@ -14,7 +14,7 @@ WIDEST = 1000
 """Pixels across, beyond which a sheet is made smaller."""
 
 QUALITY = 72
-"""Of JPEG: about a third of a PNG's bytes. In sheets and rows, looked at as they are kept, no block was seen in stones or grass."""
+"""Of JPEG: about a third of a PNG's bytes. Looked at as they are kept, sheets and rows show no block in stones or grass."""
 
 
 def keep(path: Path, page: Image.Image) -> None:
