@@ -82,16 +82,25 @@ BAD: dict[str, tuple[Callable[[], object], str]] = {
     "no light": (lambda: api.fit("skimage:gravel"), "A light is needed"),
     "a light of one number": (lambda: api.render(DETAIL, light=(3.0,)), "has 1 numbers"),
     "a light of no kind": (lambda: api.render(DETAIL, light=3), "The light is a int"),  # type: ignore[arg-type]
-    "scale 0": (lambda: api.render(DETAIL, scale=0), "The scale is 0"),
-    "scale below 0": (lambda: api.bake(api.Detail(mode="volume"), scale=-1), "The scale is -1"),
-    "scale nan": (lambda: api.render(DETAIL, scale=float("nan")), "The scale is nan"),
+    "scale 0": (lambda: api.render(DETAIL, scale=0), "scale = 0 is out of range; allowed: a number over 0"),
+    "scale below 0": (lambda: api.bake(api.Detail(mode="volume"), scale=-1), "scale = -1 is out of range"),
+    "no subsamples": (lambda: api.render(DETAIL, subsamples=0), "subsamples = 0 is out of range"),
+    "half a sample": (lambda: api.render(DETAIL, samples=1.5), "samples = 1.5"),
+    "rotation of two": (lambda: api.render(DETAIL, rotation=(1, 2)), "three numbers, each -360 to 360 degrees"),
+    "rotation of words": (lambda: api.export(DETAIL, "box", "a.ply", rotation="xyz"), "rotation"),
+    "size of one": (lambda: api.render(DETAIL, size=(64,)), "size"),
+    "size of words": (lambda: api.render(DETAIL, size=("a", "b")), "size"),
+    "background of two": (lambda: api.render(DETAIL, background=(0.1, 0.2)), "background"),
+    "dark background": (lambda: next(api.relight(DETAIL, azimuths=[0], elevations=[30], background=-1)), "background"),
+    "cells": (lambda: api.bake(api.Detail(mode="volume"), cells=4), "cells = 4 is out of range"),
+    "scale nan": (lambda: api.render(DETAIL, scale=float("nan")), "scale = nan"),
     "a shape of no kind": (lambda: api.render(DETAIL, "cone"), "The shape 'cone' is not known"),
     "a number for a shape": (lambda: api.render(DETAIL, 7), "The shape is a int"),  # type: ignore[arg-type]
     "faces beyond the vertices": (
         lambda: api.render(DETAIL, (np.zeros((3, 3)), np.array([[0, 1, 3]]))), "whole numbers from 0 to one less"
     ),
     "vertices of two numbers": (lambda: api.render(DETAIL, (np.zeros((3, 2)), np.array([[0, 1, 2]]))), "give (V, 3)"),
-    "an unknown shading": (lambda: api.render(DETAIL, shading="toon"), "no shading 'toon'"),  # type: ignore[arg-type]
+    "an unknown shading": (lambda: api.render(DETAIL, shading="toon"), "shading = 'toon' is not known"),  # type: ignore[arg-type]
     "an unknown encoding": (
         lambda: api.load_photo("skimage:gravel", encoding="log"), "no encoding 'log'"  # type: ignore[arg-type]
     ),

@@ -32,6 +32,10 @@ RESULTS: dict[str, tuple[list[str], list[str]]] = {
         ["relight", "{}/relief.json", "--azimuth", "0,90", "--elevation", "30", "--size", "32x32", "-o", "{}/turn"],
         ["folder", "frames", "animation"],
     ),
+    "relief": (
+        ["relief", "{}/photo.png", "--light", "70,50", "--size", "64", "--no-report", "-o", "{}/own"],
+        ["relief", "files", "confidence", "notes"],
+    ),
     "bake": (["bake", "{}/matter.json", "sphere", "--cells", "16", "-o", "{}/m.vol"], ["file", "what"]),
     "bake a mesh": (["bake", "{}/relief.json", "torus", "--cells", "16", "-o", "{}/m.ply"], ["file", "what"]),
     "compare": (["compare", "{}/photo.png", "skimage:grass", "--resolution", "96"], ["distance", "parts", "halves_of_a"]),

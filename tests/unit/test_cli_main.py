@@ -27,6 +27,15 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().out == f"voldetail {__version__}\n"
 
 
+def test_behind_two_dashes_every_word_is_a_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    save_detail(tmp_path / "--json", Detail(name="dashes"))
+    monkeypatch.chdir(tmp_path)
+    assert main(["show", "--", "--json"]) == 0
+    assert capsys.readouterr().out.startswith("dashes\n")
+
+
 @pytest.mark.parametrize("words", [["--help"], ["fit", "--help"], ["relight", "-h"], ["library", "build", "-h"], []])
 def test_help(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == 0

@@ -23,7 +23,7 @@ ALLOWED: dict[str, set[str]] = {
     "field": {"geometry", "setup", "detail", "noise", "texture", "backend"},
     "render": {"field", "geometry", "setup", "detail", "texture", "backend"},
     "results": {"metric", "setup", "detail", "image"},
-    "recover": {"render", "field", "setup", "detail", "image", "records", "backend"},
+    "recover": {"render", "field", "setup", "stationary", "detail", "image", "records", "backend"} | VERSION,
     "library": {"texture", "metric", "image", "detail", "records"},  # detail: the texture of a structure
     "fit": {
         "library", "results", "render", "field", "geometry", "setup", "stationary", "texture", "metric", "detail", "image",
@@ -32,6 +32,7 @@ ALLOWED: dict[str, set[str]] = {
     "apply": {"results", "render", "field", "geometry", "setup", "detail", "image", "backend"},
     "export": {"apply", "geometry", "detail"},
     "report": {"results", "setup", "detail", "image"},
+    "training": {"fit", "field", "recover", "backend"},  # torch, in a process of its own
     "backend": set(),
     "errors": set(),
     "files": set(),

@@ -12,12 +12,14 @@ from voldetail.api.files import load_detail, load_mesh, load_photo, load_setup, 
 from voldetail.api.fitting import fit
 from voldetail.api.inputs import LightLike, ShapeLike, as_light
 from voldetail.api.measuring import compare, describe
+from voldetail.api.recovering import recover, save_relief, tile
 from voldetail.api.showing import bake, export, gallery, relight, render, write_report
 from voldetail.detail import Detail
 from voldetail.errors import InputError, VoldetailError
 from voldetail.fit import Progress
 from voldetail.image import MaskLike, Photo, PhotoLike, luminance
 from voldetail.metric import Descriptor, distance, distance_by_level
+from voldetail.recover.recovery import Recovery
 from voldetail.results import FitResult, Gallery
 from voldetail.setup.light import Light, parse_light
 from voldetail.setup.setup import CameraSetup, FitSettings, PhotoSetup, ProxySetup, Setup
@@ -38,6 +40,7 @@ __all__ = [
     "PhotoSetup",
     "Progress",
     "ProxySetup",
+    "Recovery",
     "Setup",
     "ShapeLike",
     "VoldetailError",
@@ -56,9 +59,12 @@ __all__ = [
     "load_setup",
     "luminance",
     "parse_light",
+    "recover",
     "relight",
     "render",
     "save_detail",
     "save_image",
+    "save_relief",
+    "tile",
     "write_report",
 ]

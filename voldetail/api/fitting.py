@@ -15,6 +15,7 @@ from voldetail.image import MaskLike, Photo, PhotoLike, as_photo, with_mask
 from voldetail.results import FitResult
 from voldetail.setup.file import setup_from
 from voldetail.setup.setup import CameraSetup, FitSettings, ProxySetup, Setup
+from voldetail.setup.shapes import named_shape
 
 IN_MEMORY = "array"
 """The name of a photo that is not a file."""
@@ -79,4 +80,4 @@ def fit(
 def _proxy(proxy: ProxySetup | Mapping[str, object] | str) -> ProxySetup | Mapping[str, object]:
     if not isinstance(proxy, str):
         return proxy
-    return {"kind": "mesh", "mesh": proxy} if Path(proxy).suffix else {"kind": proxy}
+    return named_shape(proxy) or {"kind": proxy}  # refused there, with the kinds that are known

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,8 +21,6 @@ LightLike = str | Light | Sequence[float]
 
 ShapeLike: TypeAlias = "str | Path | trimesh.Trimesh | tuple[ArrayLike, ArrayLike]"
 """A kind of shape, a mesh file, a trimesh mesh, or (vertices (V, 3), faces (F, 3))."""
-
-LARGEST_SCALE = 1000.0
 
 
 def as_light(light: LightLike) -> Light:
@@ -68,13 +65,6 @@ def as_shape(shape: ShapeLike) -> Iterator[str | Path]:
         file = Path(folder) / ("mesh.obj" if _has_uv(mesh) else "mesh.ply")
         mesh.export(file)
         yield file
-
-
-def checked_scale(scale: float) -> float:
-    """Return how many times larger a relief is to be. Raises InputError for what is not over 0, or no number."""
-    if not isinstance(scale, int | float) or not math.isfinite(scale) or not 0 < scale <= LARGEST_SCALE:
-        raise InputError(f"The scale is {scale}; it has to be a number over 0, at most {LARGEST_SCALE:g}.")
-    return float(scale)
 
 
 def _mesh_of(shape: object) -> trimesh.Trimesh:

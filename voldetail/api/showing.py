@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import get_args
 
 from voldetail import apply, report
-from voldetail.api.inputs import LightLike, ShapeLike, as_light, as_shape, checked_scale
+from voldetail.api.checks import checked
+from voldetail.api.inputs import LightLike, ShapeLike, as_light, as_shape
 from voldetail.apply.onmesh import Colour, Picture, Shading
 from voldetail.detail import Detail
 from voldetail.detail.photo_relief import AnyDetail
-from voldetail.errors import InputError
 from voldetail.export import ExportOptions
 from voldetail.export import export as exported
 from voldetail.geometry.density_grid import DensityGrid
@@ -19,7 +18,6 @@ from voldetail.results import FitResult, Gallery
 from voldetail.setup.setup import CameraSetup
 
 Rotation = tuple[float, float, float]
-SHADINGS = get_args(Shading)
 UPRIGHT: Rotation = (0.0, 0.0, 0.0)
 
 
@@ -50,13 +48,15 @@ def render(
 
     Raises InputError for a shape, light or number that cannot be used.
     """
-    if shading not in SHADINGS:
-        raise InputError(f"There is no shading {shading!r}; use one of {', '.join(SHADINGS)}.")
+    n = checked(
+        "render", scale=scale, size=size, rotation=rotation, subsamples=subsamples, samples=samples, shading=shading,
+        background=background,
+    )  # fmt: skip
     with as_shape(shape) as file:
         return apply.render(
             detail, file, light=None if light is None else as_light(light), envmap=None if envmap is None else Path(envmap),
-            scale=checked_scale(scale), size=size, camera=camera, rotation=rotation, subsamples=subsamples, samples=samples,
-            shading=shading, background=background,
+            scale=n.scale, size=n.size, camera=camera, rotation=n.rotation, subsamples=n.subsamples, samples=n.samples,
+            shading=n.shading, background=n.background,
         )  # fmt: skip
 
 
@@ -81,10 +81,11 @@ def relight(
 
     Raises InputError as `render` does, and for an elevation that is not over 0, at most 90.
     """
+    n = checked("relight", scale=scale, size=size, rotation=rotation, subsamples=subsamples, background=background)
     with as_shape(shape) as file:
         yield from apply.relight(
-            detail, file, azimuths=azimuths, elevations=elevations, scale=checked_scale(scale), size=size, camera=camera,
-            rotation=rotation, subsamples=subsamples, background=background,
+            detail, file, azimuths=azimuths, elevations=elevations, scale=n.scale, size=n.size, camera=camera,
+            rotation=n.rotation, subsamples=n.subsamples, background=n.background,
         )  # fmt: skip
 
 
@@ -98,8 +99,9 @@ def bake(
 
     Raises InputError for a detail that displaces, an open mesh and numbers out of range.
     """
+    n = checked("bake", cells=cells, scale=scale, rotation=rotation)
     with as_shape(shape) as file:
-        return apply.bake(detail, file, cells=cells, scale=checked_scale(scale), rotation=rotation)
+        return apply.bake(detail, file, cells=n.cells, scale=n.scale, rotation=n.rotation)
 
 
 def export(
@@ -115,8 +117,9 @@ def export(
     ...     export(Detail(), "box", f"{folder}/box.ply", cells=16)
     '3074 vertices, 6144 faces'
     """
+    n = checked("export", cells=cells, scale=scale, rotation=rotation)
     with as_shape(shape) as file:
-        return exported(detail, file, path, ExportOptions(cells=cells, scale=checked_scale(scale), rotation=rotation))
+        return exported(detail, file, path, ExportOptions(cells=n.cells, scale=n.scale, rotation=n.rotation))
 
 
 def gallery(result: FitResult, on_progress: Callable[[str], None] = lambda what: None, mesh: str | Path = "cylinder") -> Gallery:

@@ -48,7 +48,7 @@ def gallery(result: FitResult, on_progress: Callable[[str], None] = lambda what:
     on_progress("the fit and four other lights")
     fitted = under(target.lamp)
     lights = tuple(
-        (f"light from {_side(azimuth)}, {up:g}\N{DEGREE SIGN} high", under(Lamp(direction_of(azimuth, up))))
+        (f"light from {side_words(azimuth)}, {up:g}\N{DEGREE SIGN} high", under(Lamp(direction_of(azimuth, up))))
         for azimuth, up in OTHER_LIGHTS
     )
     on_progress("a grazing view")
@@ -84,7 +84,8 @@ def gallery(result: FitResult, on_progress: Callable[[str], None] = lambda what:
     )
 
 
-def _side(azimuth: float) -> str:
+def side_words(azimuth: float) -> str:
+    """Return where a light of OTHER_LIGHTS comes from."""
     return {0.0: "the right", 90.0: "above", 180.0: "the left", 270.0: "below"}[azimuth]
 
 

@@ -13,7 +13,6 @@ from voldetail.apply.volumes import Progress, Tell, place, quiet, solid_surface,
 from voldetail.detail.photo_relief import AnyDetail, MappedDetail, domain_of, placed
 from voldetail.errors import InputError
 from voldetail.field.albedo import patterned
-from voldetail.geometry.primitives.primitive import primitive_of
 from voldetail.geometry.proxy import make_proxy
 from voldetail.render.environment import environment_emitter
 from voldetail.render.mesh_surface import MeshSurface, TracedMesh
@@ -172,7 +171,7 @@ def on_shape(detail: AnyDetail, proxy: ProxySetup) -> AnyDetail:
     """Return ``detail`` as it goes onto a shape, see `placed`."""
     if not isinstance(detail, MappedDetail):
         return detail
-    return placed(detail, flat=proxy.row.flat, parametrised=primitive_of(proxy).parametrised)
+    return placed(detail, flat=proxy.row.flat)
 
 
 def proxy_of(mesh: str | Path, rotation: tuple[float, float, float]) -> ProxySetup:

@@ -13,7 +13,6 @@ from voldetail.records.nearest import nearest
 from voldetail.records.refusal import shown
 
 MOST_ANGLES = 360  # a picture a degree; more is a slip of the pen
-MESH_BYTES = 512 * 2**20  # as much as the reader of meshes takes
 
 
 def numbers(text: str, count: int, option: str, names: str) -> list[float]:
@@ -30,6 +29,15 @@ def whole_numbers(text: str, count: int, option: str, names: str) -> list[int]:
     if any(v != int(v) for v in found):
         raise InputError(f"{option} {shown(text)} has a fraction; give {names} as whole numbers.")
     return [int(v) for v in found]
+
+
+ZONE_WORDS = "X,Y,WIDTH,HEIGHT in pixels"
+
+
+def zone(text: str) -> tuple[int, int, int, int]:
+    """The part of a photo in "X,Y,WIDTH,HEIGHT"."""
+    x, y, width, height = whole_numbers(text, 4, "--zone", ZONE_WORDS)
+    return x, y, width, height
 
 
 def size(text: str) -> tuple[int, int]:
@@ -69,6 +77,8 @@ def mesh(text: str, kinds: tuple[str, ...], suffixes: tuple[str, ...], option: s
     """``text`` if it is a kind of proxy or a mesh file that can be opened."""
     if text in kinds:
         return text
+    from voldetail.geometry.mesh_files import MAX_BYTES
+
     path = Path(text)
     if not path.suffix and not path.exists():
         raise InputError(
@@ -77,7 +87,7 @@ def mesh(text: str, kinds: tuple[str, ...], suffixes: tuple[str, ...], option: s
         )
     if path.suffix.lower() not in suffixes:
         raise InputError(f"The mesh {text} has the suffix {path.suffix or 'none'}; use one of {', '.join(suffixes)}.")
-    return str(readable(path, "mesh", MESH_BYTES))
+    return str(readable(path, "mesh", MAX_BYTES))
 
 
 def _floats(parts: list[str]) -> list[float] | None:

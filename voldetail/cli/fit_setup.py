@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from voldetail.cli.arguments import numbers, whole_numbers
+from voldetail.cli.arguments import numbers, zone
 from voldetail.errors import InputError
 from voldetail.records.nearest import nearest
 from voldetail.records.refusal import printable, shown
 from voldetail.setup.file import Given, load_setup, setup_from_text
 from voldetail.setup.light import FORMS
 from voldetail.setup.setup import Setup
-from voldetail.setup.shapes import SIMPLE_KINDS
+from voldetail.setup.shapes import SIMPLE_KINDS, named_shape
 
 OUTPUT_ROOT = Path("voldetail-out")
 
@@ -50,7 +50,7 @@ def output_folder(setup: Setup) -> Path:
 
 def zone_of(text: str) -> Mapping[str, object]:
     """The zone in "X,Y,WIDTH,HEIGHT"."""
-    return {"photo.zone": whole_numbers(text, 4, "--zone", "X,Y,WIDTH,HEIGHT in pixels")}
+    return {"photo.zone": zone(text)}
 
 
 def rotation_of(text: str) -> Mapping[str, object]:
@@ -60,13 +60,12 @@ def rotation_of(text: str) -> Mapping[str, object]:
 
 def proxy_of(text: str) -> Mapping[str, object]:
     """The kind of shape, or the mesh file, that a word names."""
-    if text in SIMPLE_KINDS:
-        return {"proxy.kind": text, "proxy.mesh": None}  # a scene may have named a mesh
-    if not Path(text).suffix:
+    named = named_shape(printable(text))
+    if named is None:
         from voldetail.geometry.mesh_files import SUFFIXES
 
         raise InputError(
             f"--proxy {shown(text)} is not known; {nearest(text, list(SIMPLE_KINDS))} (or give a mesh file: "
             f"{', '.join(SUFFIXES)})."
         )
-    return {"proxy.kind": "mesh", "proxy.mesh": printable(text)}
+    return {f"proxy.{key}": value for key, value in named.items()}  # a scene may have named a mesh

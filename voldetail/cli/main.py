@@ -28,8 +28,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     defect of voldetail itself. `--debug` shows the traceback as well. Words that say how a command speaks stand before or
     after it.
     """
-    asked = list(sys.argv[1:] if arguments is None else arguments)
-    given = [word for word in asked if word not in MANNERS]
+    whole = list(sys.argv[1:] if arguments is None else arguments)
+    # What stands behind "--" is a file's name, whatever it looks like.
+    end = whole.index("--") if "--" in whole else len(whole)
+    asked, names = whole[:end], whole[end:]
+    given = [*(word for word in asked if word not in MANNERS), *names]
     debug = "--debug" in asked
     MANNER.quiet, MANNER.verbose, MANNER.as_json = (word in asked for word in ("--quiet", "--verbose", "--json"))
     MANNER.threads, begun = 0, time.monotonic()

@@ -127,11 +127,13 @@ def domain_of(detail: AnyDetail) -> Literal["solid", "surface"]:
     return detail.domain if isinstance(detail, MappedDetail) else detail.noise.domain
 
 
-def placed(detail: AnyDetail, *, flat: bool, parametrised: bool) -> AnyDetail:
-    """Return ``detail`` for a shape: the photo as it is on a plane, else endless, by two parameters where the shape has them.
+def placed(detail: AnyDetail, *, flat: bool) -> AnyDetail:
+    """Return ``detail`` for a shape: the photo as it is on a plane, else endless from three sides.
+
+    Two parameters of a shape would tear the maps at its seams and draw them out at its ends.
 
     A procedural detail is the same everywhere.
     """
     if not isinstance(detail, MappedDetail):
         return detail
-    return detail.placed("surface" if flat or parametrised else "solid", "photo" if flat else "endless")
+    return detail.placed("surface", "photo") if flat else detail.placed("solid", "endless")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from html import escape
 from importlib.resources import files
 from io import StringIO
@@ -44,13 +44,13 @@ def page(result: FitResult, gallery: Gallery) -> str:
         "version": escape(detail.provenance.voldetail if detail.provenance else ""),
         "summary": escape(summary(detail)),
         "verdict": f"<b>{escape(_heading(judged.word))}</b> {escape(judged.sentence)}",
-        "pair": _figure(photo, "Photo: the zone that was fitted") + _figure(fitted, "Fit: same scale, same light, same exposure"),
-        "overlay": _figure(gallery.overlay, f"{overlay_words(result.setup)}. Light: {light}."),
-        "facts": _rows([(label, text) for label, text in facts(result)]),
-        "lights": "".join(_figure(p, caption[:1].upper() + caption[1:]) for caption, p in gallery.lights),
-        "shapes": _figure(gallery.grazing, "Seen at a grazing angle")
-        + _figure(gallery.sphere, "On a sphere")
-        + _figure(gallery.mesh, f"On another shape: {gallery.mesh_name}"),
+        "pair": figure(photo, "Photo: the zone that was fitted") + figure(fitted, "Fit: same scale, same light, same exposure"),
+        "overlay": figure(gallery.overlay, f"{overlay_words(result.setup)}. Light: {light}."),
+        "facts": rows([(label, text) for label, text in facts(result)]),
+        "lights": "".join(figure(p, caption[:1].upper() + caption[1:]) for caption, p in gallery.lights),
+        "shapes": figure(gallery.grazing, "Seen at a grazing angle")
+        + figure(gallery.sphere, "On a sphere")
+        + figure(gallery.mesh, f"On another shape: {gallery.mesh_name}"),
         "charts": "".join(
             f"<figure>{chart}</figure>"
             for chart in (
@@ -69,24 +69,32 @@ def page(result: FitResult, gallery: Gallery) -> str:
         ),
         "footer": escape(_footer(result)),
     }
-    template = files("voldetail.report").joinpath("page.html").read_text(encoding="utf-8")
-    return Template(template).substitute(parts)
+    return filled("page.html", parts)
+
+
+def filled(template: str, parts: Mapping[str, str]) -> str:
+    """Return the text of a template of this package with its ``parts`` and the pages' style put in."""
+    folder = files("voldetail.report")
+    style = folder.joinpath("page.css").read_text(encoding="utf-8")
+    return Template(folder.joinpath(template).read_text(encoding="utf-8")).substitute(parts, style=style)
 
 
 def _heading(word: str) -> str:
     return word[:1].upper() + word[1:] + "."
 
 
-def _figure(picture: NDArray[Any], caption: str) -> str:
-    rows, columns = picture.shape[:2]
+def figure(picture: NDArray[Any], caption: str) -> str:
+    """Return a linear picture with its caption."""
+    high, wide = picture.shape[:2]
     text = escape(caption)
     return (
-        f'<figure><img src="{data_uri(picture)}" width="{columns}" height="{rows}" alt="{text}">'
+        f'<figure><img src="{data_uri(picture)}" width="{wide}" height="{high}" alt="{text}">'
         f"<figcaption>{text}</figcaption></figure>\n"
     )
 
 
-def _rows(pairs: list[tuple[str, str]]) -> str:
+def rows(pairs: list[tuple[str, str]]) -> str:
+    """Return the rows of a table of labels and texts."""
     return "".join(f"<tr><th>{escape(label)}</th><td>{escape(text)}</td></tr>\n" for label, text in pairs)
 
 
@@ -94,10 +102,10 @@ def _svg(name: str, draw: Callable[[Axes], None]) -> str:
     """A diagram as inline SVG in the page's own colours."""
     # With a salt of their own the names inside the drawing are the same in every run.
     with mpl.rc_context({"svg.hashsalt": name, "svg.fonttype": "path"}):
-        figure = new_figure(5.6, 3.3)
-        draw(figure.add_axes((0.13, 0.17, 0.84, 0.7)))
+        drawing = new_figure(5.6, 3.3)
+        draw(drawing.add_axes((0.13, 0.17, 0.84, 0.7)))
         buffer = StringIO()
-        figure.savefig(buffer, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
+        drawing.savefig(buffer, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     text = buffer.getvalue()
     text = text[text.index("<svg") :]
     text = text.replace(_TEXT, "currentColor").replace(_FAINT, "var(--faint)")

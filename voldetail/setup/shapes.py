@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import PurePath
 from typing import Literal, get_args
 
 Size = tuple[float, float, float]
@@ -52,3 +53,10 @@ SHAPE_WORDS = ", ".join(SIMPLE_KINDS)
 def simple_kind(word: str) -> ShapeKind | None:
     """Return the kind that ``word`` names, None where it names none or one that is read from a file."""
     return next((kind for kind in SIMPLE_KINDS if kind == word), None)
+
+
+def named_shape(word: str) -> dict[str, object] | None:
+    """Return the kind and the mesh file of the shape that ``word`` names: a kind, or a file with a suffix; None for neither."""
+    if simple_kind(word) is not None:
+        return {"kind": word, "mesh": None}
+    return {"kind": "mesh", "mesh": word} if PurePath(word).suffix else None

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.table import Table
 
-from voldetail.cli.arguments import whole_numbers
+from voldetail.cli.arguments import zone as zone_of
 from voldetail.cli.console import output, remarks, result
 from voldetail.cli.outputs import check_file
 from voldetail.errors import InputError
@@ -138,11 +138,7 @@ def _query(photo: str, mask: Path | None, zone: str | None, scale: float | None)
     from voldetail.library import query
 
     loaded = load_masked(photo, mask)
-    part = None
-    if zone is not None:
-        x, y, width, height = whole_numbers(zone, 4, "--zone", "X,Y,WIDTH,HEIGHT in pixels")
-        part = (x, y, width, height)
-    return query(loaded.pixels, loaded.opaque, zone=part, scale=scale)
+    return query(loaded.pixels, loaded.opaque, zone=zone_of(zone) if zone is not None else None, scale=scale)
 
 
 def _print(found: Ranking, asked: Query, said: list[str]) -> None:

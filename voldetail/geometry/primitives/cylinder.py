@@ -22,7 +22,6 @@ class Cylinder(Primitive):
     """A closed cylinder, its radii along x and z and its height those of its extent."""
 
     convex = True
-    parametrised = True
 
     def skeleton(self) -> Skeleton:
         """Return a prism, its sides cut across so that its triangles are about as high as they are wide.

@@ -12,7 +12,6 @@ class Plane(Primitive):
     """The plane z = 0, as wide and as high as its extent."""
 
     slab = True
-    parametrised = True
 
     def skeleton(self) -> Skeleton:
         """Return two triangles."""

@@ -33,14 +33,12 @@ class Primitive(ABC):
     """A kind of shape of the extents of ``proxy``, in its own frame, its middle at the origin.
 
     convex: whether a face that looks away is never seen past another. slab: whether it is the top of matter that fills all
-    below it. exact: whether `distance` is known in closed form; else it is that of a mesh. parametrised: whether two
-    parameters cover it without folds, so that flat pictures lie well on it.
+    below it. exact: whether `distance` is known in closed form; else it is that of a mesh.
     """
 
     convex: ClassVar[bool] = False
     slab: ClassVar[bool] = False
     exact: ClassVar[bool] = True
-    parametrised: ClassVar[bool] = False
 
     def __init__(self, proxy: ProxySetup) -> None:
         self.proxy, self.extent = proxy, proxy.extent

@@ -25,8 +25,6 @@ AROUND, ALONG = 32, 96
 class Torus(Primitive):
     """A torus as wide and high as its extent, its tube as thick as the extent is deep."""
 
-    parametrised = True
-
     def __init__(self, proxy: ProxySetup) -> None:
         super().__init__(proxy)
         self.tube = proxy.extent[2] / 2

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from voldetail.cli.arguments import whole_numbers
+from voldetail.cli.arguments import zone as zone_of
 from voldetail.cli.console import result
 from voldetail.cli.outputs import check_file
 from voldetail.cli.texture_options import Seed
@@ -61,7 +61,7 @@ def fit(
 
 
 def _zone(text: str, columns: int, rows: int) -> tuple[int, int, int, int]:
-    x, y, width, height = whole_numbers(text, 4, "--zone", "X,Y,WIDTH,HEIGHT in pixels")
+    x, y, width, height = zone_of(text)
     if min(x, y) < 0 or min(width, height) < 1 or x + width > columns or y + height > rows:
         raise InputError(f"--zone {shown(text)} reaches outside the photo of {columns} x {rows} pixels; give a part of it.")
     return x, y, width, height
