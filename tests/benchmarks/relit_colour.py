@@ -33,7 +33,8 @@ from voldetail.render.unit_components import components
 from voldetail.results import Target
 from voldetail.setup.file import setup_from
 from voldetail.setup.lamp import Lamp
-from voldetail.setup.setup import Light, Setup
+from voldetail.setup.light import Light
+from voldetail.setup.setup import Setup
 from voldetail.setup.view import Zone
 
 WAYS = ("one tint", "by example", "undivided", "auto")

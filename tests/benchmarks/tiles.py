@@ -28,7 +28,7 @@ from voldetail.field.shell_plan import plan_shell
 from voldetail.field.tiled_surface import tiled_isosurface
 from voldetail.files import write_text
 from voldetail.geometry.isosurface import isosurface
-from voldetail.setup.setup import ProxySetup
+from voldetail.setup.proxy import ProxySetup
 
 AMPLITUDE, SCALE = 0.1, 4.0
 WAYS = ("tiled", "dense")

@@ -3,7 +3,9 @@
 from typing import Any
 
 from voldetail.detail import Detail, with_values
-from voldetail.setup.setup import Light, PhotoSetup, Setup
+from voldetail.setup.light import Light
+from voldetail.setup.photo import PhotoSetup
+from voldetail.setup.setup import Setup
 
 SIDE = 64
 OVERHEAD = Light(direction=(0.0, 0.0, 1.0))

@@ -14,8 +14,8 @@ from voldetail.apply import relight, render
 from voldetail.backend import mitsuba
 from voldetail.detail import Detail
 from voldetail.errors import InputError
+from voldetail.setup.camera import CameraSetup
 from voldetail.setup.light import direction_of, parse_light
-from voldetail.setup.setup import CameraSetup
 
 Picture = NDArray[np.float32]
 SIZE = (64, 48)

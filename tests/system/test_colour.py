@@ -28,9 +28,11 @@ from voldetail.image import Photo, luminance, save_image
 from voldetail.render.build import build
 from voldetail.render.plugins.colour import colour_dict
 from voldetail.render.unit_components import components
+from voldetail.setup.fit_settings import FitSettings
 from voldetail.setup.lamp import Lamp
-from voldetail.setup.light import lamp_of
-from voldetail.setup.setup import FitSettings, Light, PhotoSetup, Setup
+from voldetail.setup.light import Light, lamp_of
+from voldetail.setup.photo import PhotoSetup
+from voldetail.setup.setup import Setup
 from voldetail.texture import analyse, colour_at, picture
 
 LIGHT = Light(direction=(0.5, 0.3, 0.7))

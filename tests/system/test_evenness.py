@@ -16,7 +16,9 @@ from voldetail.fit.zone import around
 from voldetail.image import Photo, luminance, save_image
 from voldetail.results import EVEN_ENOUGH
 from voldetail.setup.file import setup_from
-from voldetail.setup.setup import Light, PhotoSetup, Setup
+from voldetail.setup.light import Light
+from voldetail.setup.photo import PhotoSetup
+from voldetail.setup.setup import Setup
 
 SIDE = 128
 ALL = np.ones((SIDE, SIDE), bool)

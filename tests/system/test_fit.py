@@ -24,8 +24,12 @@ from voldetail.fit.target import make_target
 from voldetail.image import Photo, save_image
 from voldetail.render.build import build
 from voldetail.render.unit_components import components
-from voldetail.setup.light import lamp_of
-from voldetail.setup.setup import CameraSetup, FitSettings, Light, PhotoSetup, ProxySetup, Setup
+from voldetail.setup.camera import CameraSetup
+from voldetail.setup.fit_settings import FitSettings
+from voldetail.setup.light import Light, lamp_of
+from voldetail.setup.photo import PhotoSetup
+from voldetail.setup.proxy import ProxySetup
+from voldetail.setup.setup import Setup
 
 LIGHT = Light(direction=(0.5, 0.3, 0.7))
 TRUTH = detail(noise__scale=6.0, relief__amplitude=0.06)

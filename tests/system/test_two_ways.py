@@ -17,9 +17,10 @@ from voldetail.render.build import SHADOW_REACH, build
 from voldetail.render.heightfield import HeightField
 from voldetail.render.mesh_surface import MeshSurface
 from voldetail.render.unit_components import Components, components
+from voldetail.setup.camera import CameraSetup
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.light import direction_of
-from voldetail.setup.setup import CameraSetup, ProxySetup
+from voldetail.setup.proxy import ProxySetup
 from voldetail.setup.view import View
 
 WAYS = [True, False]

@@ -20,8 +20,10 @@ from voldetail.fit.target import make_target
 from voldetail.image import Photo, load_photo, luminance
 from voldetail.render.build import build
 from voldetail.render.unit_components import components
+from voldetail.setup.fit_settings import FitSettings
 from voldetail.setup.light import lamp_of, parse_light
-from voldetail.setup.setup import FitSettings, PhotoSetup, Setup
+from voldetail.setup.photo import PhotoSetup
+from voldetail.setup.setup import Setup
 
 SIDE = 64
 BLUE = (0.12, 0.2, 0.4548)  # luminance 0.2

@@ -18,7 +18,7 @@ from voldetail.render.mesh_surface import MeshSurface
 from voldetail.render.traced_medium import OPAQUE, TracedVolume, box_of
 from voldetail.render.unit_components import Components, components, traced_picture
 from voldetail.setup.lamp import Lamp
-from voldetail.setup.setup import ProxySetup
+from voldetail.setup.proxy import ProxySetup
 from voldetail.setup.view import View
 
 MIDDLE = View(-0.2, 0.2, -0.2, 0.2, 16, 16)

@@ -23,7 +23,7 @@ from voldetail.field.hypertexture import Hypertexture  # noqa: E402
 from voldetail.field.relief import relief_at  # noqa: E402
 from voldetail.field.shell import Shell, make_shell  # noqa: E402
 from voldetail.field.shell_plan import plan_shell  # noqa: E402
-from voldetail.setup.setup import ProxySetup  # noqa: E402
+from voldetail.setup.proxy import ProxySetup  # noqa: E402
 
 RNG = np.random.default_rng(6)
 

@@ -22,7 +22,7 @@ from voldetail.field.shell import Shell, make_shell  # noqa: E402
 from voldetail.field.shell_plan import plan_shell  # noqa: E402
 from voldetail.geometry.density_grid import DensityGrid  # noqa: E402
 from voldetail.geometry.isosurface import Isosurface, isosurface, surface_cost  # noqa: E402
-from voldetail.setup.setup import ProxySetup  # noqa: E402
+from voldetail.setup.proxy import ProxySetup  # noqa: E402
 
 
 def shell_of(edge: float = 0.05, amplitude: float = 0.0, **fields: Any) -> Shell:

@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 from voldetail.backend import mitsuba
 from voldetail.errors import InputError
 from voldetail.setup.lamp import Lamp
-from voldetail.setup.light import lamp_of, parse_light
+from voldetail.setup.light import Light, lamp_of, parse_light
 from voldetail.setup.lights.flash import flash_foot
-from voldetail.setup.setup import Light
 
 
 def spot(rows: int, columns: int, row: float, column: float, width: float = 0.2) -> NDArray[np.float32]:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from voldetail.geometry.proxy import Proxy, make_proxy
 from voldetail.geometry.topology import crosses, edges, signed_volume, weld
-from voldetail.setup.setup import ProxySetup
+from voldetail.setup.proxy import ProxySetup
 from voldetail.setup.shapes import SIMPLE_KINDS
 
 EDGE = 0.08

@@ -7,6 +7,7 @@ import pytest
 
 from voldetail.errors import InputError
 from voldetail.records.reading import LARGEST_FILE
+from voldetail.setup.camera import CameraSetup
 from voldetail.setup.file import (
     load_setup,
     setup_from,
@@ -14,7 +15,7 @@ from voldetail.setup.file import (
     setup_to_toml,
 )
 from voldetail.setup.light import parse_light
-from voldetail.setup.setup import CameraSetup, ProxySetup
+from voldetail.setup.proxy import ProxySetup
 from voldetail.setup.shapes import SHAPES
 
 SMALL = """

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from voldetail.errors import InputError
 from voldetail.setup.file import setup_from
-from voldetail.setup.light import angles_of, direction_of, light_text, parse_light
-from voldetail.setup.setup import Light
+from voldetail.setup.light import Light, angles_of, direction_of, light_text, parse_light
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ from voldetail.field.shell_plan import DEFAULT_BUDGET, plan_shell  # noqa: E402
 from voldetail.geometry import signed_distance  # noqa: E402
 from voldetail.geometry.mesh_distance import mesh_distance, squared_distances, winding_numbers  # noqa: E402
 from voldetail.geometry.primitives.primitive import primitive_of  # noqa: E402
-from voldetail.setup.setup import ProxySetup  # noqa: E402
+from voldetail.setup.proxy import ProxySetup  # noqa: E402
 
 RNG = np.random.default_rng(5)
 POINTS = RNG.uniform(-1.6, 1.6, (4000, 3))

@@ -30,7 +30,7 @@ from voldetail.field.shell_plan import BYTES_A_TILED_VERTEX, plan_shell  # noqa:
 from voldetail.field.tiled_surface import tiled_isosurface  # noqa: E402
 from voldetail.geometry.density_grid import DensityGrid  # noqa: E402
 from voldetail.geometry.isosurface import Isosurface, isosurface  # noqa: E402
-from voldetail.setup.setup import ProxySetup  # noqa: E402
+from voldetail.setup.proxy import ProxySetup  # noqa: E402
 
 
 def whole(texture: Hypertexture) -> Isosurface:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from voldetail.setup.setup import CameraSetup
+from voldetail.setup.camera import CameraSetup
 from voldetail.setup.view import view_of, whole_view
 
 ORTHOGRAPHIC = CameraSetup()

@@ -16,7 +16,7 @@ from voldetail.render.unit_components import Components, components
 from voldetail.render.volume import SOLID_CELLS, Volume, fitting_edge, medium_of, windowed
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.light import direction_of
-from voldetail.setup.setup import ProxySetup
+from voldetail.setup.proxy import ProxySetup
 from voldetail.setup.view import View
 
 VIEW = View(-0.5, 0.5, -0.5, 0.5, 48, 48)

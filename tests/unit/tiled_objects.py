@@ -12,7 +12,7 @@ from voldetail.field.hypertexture import Hypertexture
 from voldetail.field.shell import make_shell
 from voldetail.field.shell_grid import ShellPlan
 from voldetail.field.shell_plan import plan_shell
-from voldetail.setup.setup import ProxySetup
+from voldetail.setup.proxy import ProxySetup
 
 SMALL = 240_000_000
 """Bytes: enough for tiles, too little for the grid as a whole."""

@@ -21,8 +21,12 @@ from voldetail.image import MaskLike, Photo, PhotoLike, luminance
 from voldetail.metric import Descriptor, distance, distance_by_level
 from voldetail.recover.recovery import Recovery
 from voldetail.results import FitResult, Gallery
+from voldetail.setup.camera import CameraSetup
+from voldetail.setup.fit_settings import FitSettings
 from voldetail.setup.light import Light, parse_light
-from voldetail.setup.setup import CameraSetup, FitSettings, PhotoSetup, ProxySetup, Setup
+from voldetail.setup.photo import PhotoSetup
+from voldetail.setup.proxy import ProxySetup
+from voldetail.setup.setup import Setup
 
 __all__ = [
     "CameraSetup",

@@ -13,8 +13,11 @@ from voldetail.errors import InputError
 from voldetail.fit import Progress
 from voldetail.image import MaskLike, Photo, PhotoLike, as_photo, with_mask
 from voldetail.results import FitResult
+from voldetail.setup.camera import CameraSetup
 from voldetail.setup.file import setup_from
-from voldetail.setup.setup import CameraSetup, FitSettings, ProxySetup, Setup
+from voldetail.setup.fit_settings import FitSettings
+from voldetail.setup.proxy import ProxySetup
+from voldetail.setup.setup import Setup
 from voldetail.setup.shapes import named_shape
 
 IN_MEMORY = "array"

@@ -15,7 +15,7 @@ from voldetail.export import ExportOptions
 from voldetail.export import export as exported
 from voldetail.geometry.density_grid import DensityGrid
 from voldetail.results import FitResult, Gallery
-from voldetail.setup.setup import CameraSetup
+from voldetail.setup.camera import CameraSetup
 
 Rotation = tuple[float, float, float]
 UPRIGHT: Rotation = (0.0, 0.0, 0.0)

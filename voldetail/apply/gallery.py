@@ -16,9 +16,11 @@ from voldetail.image import resize
 from voldetail.render.build import build, faces_camera
 from voldetail.render.unit_components import components
 from voldetail.results import FitResult, Gallery
+from voldetail.setup.camera import CameraSetup
 from voldetail.setup.lamp import Lamp
-from voldetail.setup.light import direction_of
-from voldetail.setup.setup import CameraSetup, Light, PhotoSetup, Setup
+from voldetail.setup.light import Light, direction_of
+from voldetail.setup.photo import PhotoSetup
+from voldetail.setup.setup import Setup
 
 Picture = NDArray[np.float32]
 

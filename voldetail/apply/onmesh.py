@@ -20,9 +20,10 @@ from voldetail.render.plugins.phong import Diffuse, phong_dict, principled_equiv
 from voldetail.render.traced import emitters_of
 from voldetail.render.unit_components import components, traced_picture
 from voldetail.render.volume import Volume
+from voldetail.setup.camera import CameraSetup
 from voldetail.setup.lamp import Lamp
-from voldetail.setup.light import direction_of, lamp_of
-from voldetail.setup.setup import CameraSetup, Light, ProxySetup
+from voldetail.setup.light import Light, direction_of, lamp_of
+from voldetail.setup.proxy import ProxySetup
 from voldetail.setup.shapes import SHAPES, simple_kind
 from voldetail.setup.view import View, whole_view
 

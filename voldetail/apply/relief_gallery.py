@@ -16,9 +16,9 @@ from voldetail.image import resize, to_linear
 from voldetail.render.heightfield import HeightField
 from voldetail.render.unit_components import components
 from voldetail.results.relief_gallery import ReliefGallery
+from voldetail.setup.camera import CameraSetup
 from voldetail.setup.lamp import Lamp
-from voldetail.setup.light import direction_of
-from voldetail.setup.setup import CameraSetup, Light
+from voldetail.setup.light import Light, direction_of
 from voldetail.setup.view import View
 
 Picture = NDArray[np.float32]

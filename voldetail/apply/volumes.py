@@ -18,7 +18,7 @@ from voldetail.render.mesh_surface import VolumeSurface
 from voldetail.render.traced_medium import TracedVolume
 from voldetail.render.volume import MEDIUM_PIXELS, SOLID_PIXELS, Volume, medium_of, thinnest_edge
 from voldetail.setup.lamp import Lamp
-from voldetail.setup.setup import ProxySetup
+from voldetail.setup.proxy import ProxySetup
 from voldetail.setup.view import View
 
 BUDGET = 2 << 30

@@ -11,7 +11,7 @@ from voldetail.errors import InputError
 
 if TYPE_CHECKING:
     from voldetail.detail.photo_relief import AnyDetail
-    from voldetail.setup.setup import CameraSetup
+    from voldetail.setup.camera import CameraSetup
 
 BRIGHTEST = 1e3
 
@@ -27,7 +27,7 @@ Subsamples = Annotated[int, typer.Option(min=1, max=8, help="Samples a pixel, ea
 
 
 def camera_of(fov: float | None) -> CameraSetup | None:
-    from voldetail.setup.setup import CameraSetup
+    from voldetail.setup.camera import CameraSetup
 
     return None if fov is None else CameraSetup(kind="perspective", field_of_view=fov)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from voldetail.errors import InputError
 from voldetail.geometry.mesh_distance import Grid
 from voldetail.geometry.meshes import Mesh
-from voldetail.setup.setup import ProxySetup
+from voldetail.setup.proxy import ProxySetup
 
 SIDE = 64
 """Steps along a block's side; tuned on a sphere of 256 cells a side."""

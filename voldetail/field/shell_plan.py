@@ -14,7 +14,7 @@ from voldetail.geometry import isosurface
 from voldetail.geometry.meshes import Mesh
 from voldetail.geometry.primitives.primitive import primitive_of
 from voldetail.geometry.proxy import rotation_matrix
-from voldetail.setup.setup import ProxySetup
+from voldetail.setup.proxy import ProxySetup
 
 DEFAULT_BUDGET = 1 << 30
 """Bytes: a cube of 630 cells a side for the simple shapes, of 430 for meshes, beside the rest of the program."""

@@ -8,8 +8,8 @@ from voldetail.fit.target import mask_of
 from voldetail.fit.zone import check_zone
 from voldetail.image import Photo, luminance
 from voldetail.results import LightGuess
-from voldetail.setup.light import FORMS_GIVEN, direction_of
-from voldetail.setup.setup import Light, Setup
+from voldetail.setup.light import FORMS_GIVEN, Light, direction_of
+from voldetail.setup.setup import Setup
 
 
 def resolve_light(setup: Setup, photo: Photo) -> tuple[Setup, LightGuess | None]:

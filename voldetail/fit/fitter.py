@@ -30,7 +30,8 @@ from voldetail.metric import metric_named
 from voldetail.metric.anisotropy import anisotropy
 from voldetail.render.build import build
 from voldetail.results import AmplitudeInterval, ColourChoice, FitResult, Identifiability, LightGuess, Target
-from voldetail.setup.setup import SMALLEST_ZONE, Setup
+from voldetail.setup.photo import SMALLEST_ZONE
+from voldetail.setup.setup import Setup
 
 COLOUR_SEEDS = 3
 """Noise seeds that judge the tries of a colour, and as many for the relief's shading."""

@@ -8,7 +8,7 @@ from scipy.ndimage import gaussian_filter, uniform_filter
 
 from voldetail.errors import InputError
 from voldetail.image import to_srgb
-from voldetail.setup.setup import SMALLEST_ZONE
+from voldetail.setup.photo import SMALLEST_ZONE
 from voldetail.setup.view import Zone
 
 FEATURE_PIXELS = 12.0

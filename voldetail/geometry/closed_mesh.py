@@ -7,7 +7,7 @@ from pathlib import Path
 
 from voldetail.errors import InputError
 from voldetail.geometry.meshes import Mesh, load_mesh, normalise
-from voldetail.setup.setup import ProxySetup
+from voldetail.setup.proxy import ProxySetup
 
 
 def closed_mesh(proxy: ProxySetup) -> Mesh:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from voldetail.geometry.primitives.primitive import primitive_of
 from voldetail.geometry.tessellate import MAXIMUM_FACES, split_long_edges
-from voldetail.setup.setup import ProxySetup
+from voldetail.setup.proxy import ProxySetup
 from voldetail.setup.view import View
 
 SOLID = "solid"

@@ -27,9 +27,9 @@ from voldetail.recover.place import about_middle, box_of, cut, lamp_about
 from voldetail.recover.reflectance import Surface, surface_of
 from voldetail.recover.shading import SHININESS, Shading, shading_of
 from voldetail.recover.slopes import Method, slopes_of
+from voldetail.setup.camera import CameraSetup
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.light import Light, lamp_of, light_text
-from voldetail.setup.setup import CameraSetup
 from voldetail.setup.view import View, Zone, view_of
 
 DEFAULT_SIZE, LEAST_SIZE, MOST_SIZE = 1024, 64, 8192

@@ -13,7 +13,8 @@ from voldetail.geometry.proxy import Proxy, make_proxy, seen_part
 from voldetail.render.heightfield import HeightField
 from voldetail.render.mesh_surface import MeshSurface
 from voldetail.render.volume import Volume, fitting_edge
-from voldetail.setup.setup import ProxySetup, Setup
+from voldetail.setup.proxy import ProxySetup
+from voldetail.setup.setup import Setup
 from voldetail.setup.view import View, Zone, view_of
 
 FLAT_MARGIN = 16

@@ -19,7 +19,7 @@ from voldetail.field.shell_grid import ShellPlan
 from voldetail.field.shell_plan import LEAST_CELLS, plan_shell
 from voldetail.geometry.primitives.primitive import primitive_of
 from voldetail.render.marched import MarchedVolume
-from voldetail.setup.setup import ProxySetup
+from voldetail.setup.proxy import ProxySetup
 from voldetail.setup.view import View
 
 SOLID_CELLS = 3.0

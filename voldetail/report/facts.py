@@ -5,7 +5,8 @@ from __future__ import annotations
 from voldetail.detail import parameter
 from voldetail.report.verdict import number
 from voldetail.results import EVEN_ENOUGH, AmplitudeInterval, FitResult
-from voldetail.setup.setup import Light, Setup
+from voldetail.setup.light import Light
+from voldetail.setup.setup import Setup
 
 
 def light_words(light: Light) -> str:

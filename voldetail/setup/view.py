@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from voldetail.setup.setup import CameraSetup
+from voldetail.setup.camera import CameraSetup
 
 Zone = tuple[int, int, int, int]
 

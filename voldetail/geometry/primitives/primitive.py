@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from voldetail.geometry.meshes import Mesh
 from voldetail.geometry.signed_distance import Distance
-from voldetail.setup.setup import ProxySetup
+from voldetail.setup.proxy import ProxySetup
 from voldetail.setup.shapes import SHAPES
 
 Floats = NDArray[np.float64]

@@ -16,7 +16,7 @@ import trimesh
 
 from voldetail.geometry.primitives.primitive import Floats, Primitive, Skeleton
 from voldetail.geometry.signed_distance import TINY, Distance
-from voldetail.setup.setup import ProxySetup
+from voldetail.setup.proxy import ProxySetup
 
 AROUND, ALONG = 32, 96
 """Sides of the tube and of the ring that are refined."""
