@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 from voldetail.detail import Detail
 from voldetail.errors import InputError
+from voldetail.field.larger_cells import affordable_edge
 from voldetail.field.medium import tinted_albedo
 from voldetail.field.shell_grid import ShellPlan
 from voldetail.field.shell_plan import OverBudgetError
@@ -64,21 +66,23 @@ def place(
         # As fine as its edge needs, between half a pixel and what a soft one makes do with.
         needed = detail.medium.thickness * scale / thinnest_edge(1.0, detail.medium.exponent)
         wanted = min(max(needed, 0.5 * view.pixel), MEDIUM_PIXELS * view.pixel)
-    used = wanted
-    while True:
+
+    def volume_of(edge: float) -> Volume:
         # A medium's own plan does not know what marching it takes on top, which is what is held against the budget below.
         allowed = BUDGET if solid else NO_LIMIT
         tiles = solid and not whole_grid
-        volume = Volume(proxy, view, edge=used, scale=scale, whole_plane=whole_plane, budget=allowed, tiles=tiles)
+        return Volume(proxy, view, edge=edge, scale=scale, whole_plane=whole_plane, budget=allowed, tiles=tiles)
+
+    def share(edge: float) -> float:
         try:
-            plan = planned(volume, detail)
+            plan = planned(volume_of(edge), detail)
         except OverBudgetError:
-            used *= 1.25
-            continue
-        over = plan.cells * MARCHED_BYTES / BUDGET
-        if solid or over <= 1.0:
-            break
-        used *= max(COARSER, over ** (1 / 3))
+            return math.inf
+        return 0.0 if solid else plan.cells * MARCHED_BYTES / BUDGET
+
+    used = affordable_edge(wanted, share, least_step=COARSER, trust=1.0)
+    volume = volume_of(used)
+    plan = planned(volume, detail)
     tell(_sentence(plan, plan.byte_count if solid else plan.cells * MARCHED_BYTES, used / wanted))
     return volume
 

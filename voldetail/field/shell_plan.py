@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from voldetail.errors import InputError
+from voldetail.field.larger_cells import affordable_edge
 from voldetail.field.shell_blocks import near_blocks
 from voldetail.field.shell_grid import SIDE, ShellPlan
 from voldetail.geometry import isosurface
@@ -47,6 +48,10 @@ BYTES_A_TILED_VERTEX = 200.0
 
 BYTES_A_BLOCK = 100.0
 """Of all the grid's, while those are found that the surface can reach."""
+
+ADVICE_STEP, ADVICE_TRUST = 1.02, 0.9
+"""Steps in which an edge is looked for that fits: what does not shrink with cells makes the third root too small a step, and too
+small is wanted, since the least edge is asked for."""
 
 SECONDS_A_BLOCK = {"simple": 0.03, "mesh": 0.1}
 SECONDS_A_TILED_VERTEX = 2e-6
@@ -167,12 +172,12 @@ def _vertices(plan: ShellPlan) -> float:
 
 def _fitting_edge(plan: ShellPlan, budget: int, tiles: bool) -> float:
     """Return the least edge, rounded up to three digits, with which the plan fits the budget; infinity where none does."""
-    edge, byte_count = plan.edge, plan.byte_count
-    while edge < 1e6:
-        # Cells go with the third power; what does not shrink makes this too small rather than too large.
-        edge *= max(1.02, (byte_count / max(budget, 1)) ** (1 / 3) * 0.9)
-        byte_count = _layout(plan.proxy, plan.mesh, edge, plan.thickness, plan.amplitude, tiles).byte_count
-        if byte_count <= budget:
-            digits = 10.0 ** (math.floor(math.log10(edge)) - 2)
-            return math.ceil(edge / digits) * digits
-    return math.inf
+
+    def share(edge: float) -> float:
+        return _layout(plan.proxy, plan.mesh, edge, plan.thickness, plan.amplitude, tiles).byte_count / max(budget, 1)
+
+    edge = affordable_edge(plan.edge, share, least_step=ADVICE_STEP, trust=ADVICE_TRUST)
+    if math.isinf(edge):
+        return edge
+    digits = 10.0 ** (math.floor(math.log10(edge)) - 2)
+    return math.ceil(edge / digits) * digits

@@ -13,6 +13,7 @@ from functools import lru_cache
 
 from voldetail.detail import Detail
 from voldetail.field.hypertexture import Hypertexture
+from voldetail.field.larger_cells import affordable_edge
 from voldetail.field.medium import Medium
 from voldetail.field.shell import Shell, make_shell
 from voldetail.field.shell_grid import ShellPlan
@@ -42,6 +43,9 @@ SOLID_PIXELS, MEDIUM_PIXELS = 1.0, 2.0
 
 FIT_SECONDS = 0.15
 """Estimated time that baking a detail may take in a fit; larger scenes get coarser cells."""
+
+FIT_STEP = 1.1
+"""Factor by which cells of a fit become larger at a time."""
 
 SOLID_RISE, MEDIUM_RISE = 0.04, 0.1
 """Amplitude for that estimate, which is not to change with the detail, as a share of the window's longest side."""
@@ -137,12 +141,13 @@ def fitting_edge(proxy: ProxySetup, view: View, *, solid: bool, whole_plane: boo
     """Return the edge of cells for a fit: SOLID_PIXELS or MEDIUM_PIXELS, more where baking would take over FIT_SECONDS."""
     edge = (SOLID_PIXELS if solid else MEDIUM_PIXELS) * view.pixel
     amplitude = (SOLID_RISE if solid else MEDIUM_RISE) * max(view.rows, view.columns) * view.pixel
-    while True:
+
+    def share(edge: float) -> float:
         volume = Volume(proxy, view, edge=edge, whole_plane=whole_plane, budget=1 << 62)
         thickness = SOLID_CELLS * edge if solid else SOFT * amplitude
-        if volume.plan(thickness, amplitude, solid).seconds <= FIT_SECONDS:
-            return edge
-        edge *= 1.1
+        return volume.plan(thickness, amplitude, solid).seconds / FIT_SECONDS
+
+    return affordable_edge(edge, share, least_step=FIT_STEP, trust=0.0)
 
 
 def medium_of(detail: Detail, edge: float, scale: float = 1.0) -> Medium:
