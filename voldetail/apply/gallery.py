@@ -21,8 +21,7 @@ from voldetail.setup.lamp import Lamp
 from voldetail.setup.light import Light, direction_of
 from voldetail.setup.photo import PhotoSetup
 from voldetail.setup.setup import Setup
-
-Picture = NDArray[np.float32]
+from voldetail.types import Picture
 
 OTHER_LIGHTS = ((0.0, 35.0), (90.0, 35.0), (180.0, 35.0), (270.0, 35.0))
 """Azimuth and elevation of the four other lights, in degrees: low enough to show the relief from every side."""

@@ -6,9 +6,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
 from voldetail.apply.volumes import Progress, Tell, place, quiet, solid_surface, traced_medium, unseen
 from voldetail.detail.photo_relief import AnyDetail, MappedDetail, domain_of, placed
 from voldetail.errors import InputError
@@ -26,8 +23,8 @@ from voldetail.setup.light import Light, direction_of, lamp_of
 from voldetail.setup.proxy import ProxySetup
 from voldetail.setup.shapes import SHAPES, simple_kind
 from voldetail.setup.view import View, whole_view
+from voldetail.types import Picture
 
-Picture = NDArray[np.float32]
 Colour = tuple[float, float, float]
 Shading = Literal["phong", "principled"]
 

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from voldetail.apply.gallery import EDGE, GRAZING_TILT, OTHER_LIGHTS, side_words
 from voldetail.apply.onmesh import render
@@ -20,8 +19,7 @@ from voldetail.setup.camera import CameraSetup
 from voldetail.setup.lamp import Lamp
 from voldetail.setup.light import Light, direction_of
 from voldetail.setup.view import View
-
-Picture = NDArray[np.float32]
+from voldetail.types import Picture
 
 LONGEST = 480
 """Pixels of the longest side of the flat pictures."""

@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from voldetail.detail.parameters import CURVE_POINTS
 from voldetail.fit.ranges import SHAPE_RANGE
-
-Vector = NDArray[np.float64]
+from voldetail.types import Vector
 
 SHAPE_COUNT = 3
 

@@ -12,9 +12,8 @@ from typing import Any, Protocol
 
 import cma
 import numpy as np
-from numpy.typing import NDArray
 
-Vector = NDArray[np.float64]
+from voldetail.types import Vector
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from voldetail.detail import (
     Detail,
@@ -47,8 +46,7 @@ from voldetail.fit.ranges import (
     STRIPED_CELLS_PENALTY,
 )
 from voldetail.render.volume import CELL_DEPTH, thinnest_edge
-
-Vector = NDArray[np.float64]
+from voldetail.types import Vector
 
 BORDERED = (1.0, -1.0, 1.0)
 """Weights of the closest points by which the noise is F2 - F1: zero on the borders of cells."""

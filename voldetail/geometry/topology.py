@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse import csgraph
 
-Vertices = NDArray[np.float64]
-Faces = NDArray[np.int64]
+from voldetail.types import Faces, Vertices
 
 
 def weld(vertices: Vertices) -> tuple[NDArray[np.int64], int]:

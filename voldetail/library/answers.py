@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from voldetail.detail import StructureTexture
 from voldetail.errors import InputError
@@ -17,8 +17,8 @@ from voldetail.library.index import Index, nearest_by_index
 from voldetail.library.span import Span, span_of, spanned
 from voldetail.library.two_tone import recolour
 from voldetail.texture.structures import MODELS, structure
+from voldetail.types import Array
 
-Array = NDArray[np.float32]
 Tone = tuple[float, float, float]
 
 BLACK: Tone = (0.0, 0.0, 0.0)

@@ -18,8 +18,8 @@ from voldetail.library.span import TRIM
 from voldetail.library.two_tone import TwoTone, two_tone
 from voldetail.library.vectors import SMALLEST_SIDE, vector_of
 from voldetail.texture.analysis import pixels_of
+from voldetail.types import Array
 
-Array = NDArray[np.float32]
 Zone = tuple[int, int, int, int]
 
 LARGEST_SIDE = 2048

@@ -21,9 +21,7 @@ from voldetail.errors import InputError
 from voldetail.library.pieces import Columns, Rows
 from voldetail.library.vectors import ISOTROPIC, LENGTH, ORIENTATIONS, ORIENTED, scales, weights
 from voldetail.metric.gabor import GLOBAL, SCALES
-
-Array = NDArray[np.float32]
-Floats = NDArray[np.float64]
+from voldetail.types import Array, Floats
 
 BLOCK = 8192
 """Entries worked on at once: 24 MB of the table."""

@@ -23,9 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from voldetail.errors import InputError
 from voldetail.image import luminance, to_linear, to_srgb
 from voldetail.texture.analysis import CONSTANT, pixels_of, principal_axes
-
-Array = NDArray[np.float32]
-Mask = NDArray[np.bool_]
+from voldetail.types import Array, Mask
 
 WELL_EXPLAINED = 0.9
 """Share of the variance on the line from which a photo counts as two-tone. Tuned on 22 photographs: stone,

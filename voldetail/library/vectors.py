@@ -23,8 +23,7 @@ from voldetail.errors import InputError
 from voldetail.metric import gabor
 from voldetail.metric.layers import Layers
 from voldetail.metric.sensitivity import PIXELS_A_DEGREE
-
-Array = NDArray[np.float32]
+from voldetail.types import Array
 
 ORIENTATIONS = gabor.ORIENTATIONS
 FREQUENCIES = tuple(len(gabor.cycles(scale)) for scale in range(gabor.SCALES))

@@ -12,9 +12,8 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.lib.stride_tricks import as_strided
-from numpy.typing import NDArray
 
-Array = NDArray[np.float32]
+from voldetail.types import Array
 
 HALF_WINDOW = 4
 """m_s of GD10 section 5: the window covers offsets -m_s + 1 to m_s."""

@@ -4,9 +4,6 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from voldetail.metric import (
     gabor,
     gradient_skew,
@@ -19,8 +16,8 @@ from voldetail.metric import (
     spectrum,
 )
 from voldetail.metric.layers import Layers
+from voldetail.types import Array
 
-Array = NDArray[np.float32]
 Parts = Mapping[str, Array]
 
 

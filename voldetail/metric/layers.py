@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 from voldetail.errors import InputError
 from voldetail.image import gaussian_pyramid, masked_pyramid, to_srgb
 from voldetail.metric.filters import WINDOW, responses
+from voldetail.types import Array, Mask
 
-Array = NDArray[np.float32]
-Mask = NDArray[np.bool_]
 _Value = TypeVar("_Value", bound=np.generic)
 
 LEVELS = 3

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float32]
+from voldetail.types import Array
+
 Parts = Mapping[str, Array]
 
 STEPS = 32

@@ -21,8 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voldetail.noise.wavelet_tile import GAIN, projection
-
-Floats = NDArray[np.float64]
+from voldetail.types import Floats
 
 PHASE = 0.2597
 """Where texels lie from the nearest coefficient. A spline's variance depends on that place (0.17 on the edge between two

@@ -13,7 +13,6 @@ from functools import lru_cache
 from importlib.resources import as_file, files
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 from voldetail.image import luminance, resize
@@ -21,6 +20,7 @@ from voldetail.recover.gates import BRIGHTEST, DARKEST
 from voldetail.recover.light_map import LightMap
 from voldetail.recover.linear import mean_direction, slopes_under, windows
 from voldetail.recover.network_layers import multiple, run
+from voldetail.types import Array
 
 SLOW = 16.0
 """Pixels: deviation of the local mean, as in training (training.samples)."""
@@ -42,8 +42,6 @@ SMALLEST_COPY = 96
 
 COPIES = 3
 """Copies at most, each half as large as the one before."""
-
-Array = NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)

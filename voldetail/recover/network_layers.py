@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg.blas import sgemm
 
-Array = NDArray[np.float32]
+from voldetail.types import Array
+
 Weights = Mapping[str, Array]
 
 LEAK = 0.1

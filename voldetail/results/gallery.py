@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Picture = NDArray[np.float32]
+from voldetail.types import Picture
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-Picture = NDArray[np.float32]
+from voldetail.types import Picture
 
 
 @dataclass(frozen=True, eq=False)

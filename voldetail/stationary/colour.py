@@ -10,9 +10,7 @@ from skimage.color import lab2rgb, rgb2lab
 
 from voldetail.errors import InputError
 from voldetail.image import to_linear, to_srgb
-
-Array = NDArray[np.float32]
-Mask = NDArray[np.bool_]
+from voldetail.types import Array, Mask
 
 BRIGHTEST = 4.0
 """Linear light above this is cut: four times white is a lamp or a glint, and would stretch every histogram."""

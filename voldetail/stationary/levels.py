@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from voldetail.errors import InputError
 from voldetail.image import resize, resize_mask
@@ -13,9 +12,7 @@ from voldetail.stationary.colour import to_lab
 from voldetail.stationary.patchmatch_arrays import PATCH
 from voldetail.stationary.patchmatch_source import Source
 from voldetail.stationary.project import BLOCK_SPACING
-
-Array = NDArray[np.float32]
-Mask = NDArray[np.bool_]
+from voldetail.types import Array, Mask
 
 TOP = 1 / 4
 """Size of the top level against the last (section 4.2)."""

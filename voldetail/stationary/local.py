@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-Array = NDArray[np.float32]
+from voldetail.types import Array
 
 ONE_THREAD = 4 * 65536
 """Multiplications up to which OpenBLAS keeps a product in one thread (its GEMM_MULTITHREAD_THRESHOLD x 65536)."""

@@ -18,9 +18,8 @@ from voldetail.errors import InputError
 from voldetail.stationary.colour import to_lab, usable
 from voldetail.stationary.local import Neighbourhoods, neighbourhoods
 from voldetail.stationary.steerable import REACH, bands, bands_of_photo
+from voldetail.types import Array, Mask
 
-Array = NDArray[np.float32]
-Mask = NDArray[np.bool_]
 Measure = Literal["mean", "moments2", "moments3", "moments4", "histogram", "steerable"]
 
 MEASURES: tuple[Measure, ...] = get_args(Measure)

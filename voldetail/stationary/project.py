@@ -16,8 +16,7 @@ from voldetail.stationary.local import Neighbourhoods, neighbourhoods
 from voldetail.stationary.measure import ORDERS, Measure
 from voldetail.stationary.pearson import cumulative
 from voldetail.stationary.steerable import bands, with_bands
-
-Array = NDArray[np.float32]
+from voldetail.types import Array
 
 BINS = 64
 """Of the histograms, between a channel's lowest and highest value."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-Array = NDArray[np.float32]
+from voldetail.types import Array
 
 ORIENTATIONS = 4
 """o of MJHRW17 section 3.3; at one magnitude m."""

@@ -23,8 +23,7 @@ from voldetail.stationary.patchmatch_arrays import PATCH, SEARCH_SIGMA, vote
 from voldetail.stationary.patchmatch_source import UNIFORMITY
 from voldetail.stationary.patchmatch_vote import carry
 from voldetail.stationary.project import match_histogram, project
-
-Array = NDArray[np.float32]
+from voldetail.types import Array
 
 SIZE = 256
 """Side of a tile in pixels if none is given (section 4.1)."""

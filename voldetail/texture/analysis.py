@@ -20,8 +20,7 @@ from voldetail.texture.gaussian import gaussianise
 from voldetail.texture.isotropy import isotropy_of
 from voldetail.texture.lobes import lobes_of
 from voldetail.texture.power import band_powers, weights_of
-
-Floats = NDArray[np.float64]
+from voldetail.types import Floats
 
 SMALLEST_SIDE = 8
 """Pixels: three octaves of wavelengths, the fewest that tell a slope of the spectrum."""

@@ -12,13 +12,11 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.special import ndtr, ndtri
 
 from voldetail.detail.colour import CURVE_SAMPLES
-
-Floats = NDArray[np.float64]
+from voldetail.types import Floats
 
 OUTERMOST = 3.2
 """The outer samples' place in deviations of the noise: probabilities 0.0007 and 0.9993. Tuned on 58 channels of the

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-Floats = NDArray[np.float64]
+from voldetail.types import Floats
 
 LEVELS = 1 << 16
 """Levels that a channel is sorted into: ranks by counting, in a fifth of the time that sorting takes. Values closer than a

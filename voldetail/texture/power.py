@@ -24,8 +24,7 @@ from scipy.optimize import nnls
 
 from voldetail.detail.colour import MOST_BANDS
 from voldetail.noise.wavelet_spectrum import band_of, leak_matrix, variance
-
-Floats = NDArray[np.float64]
+from voldetail.types import Floats
 
 TAPER = 0.5
 """Share of each side over which the picture fades (a Tukey window); tuned by `tests.benchmarks.colour_weights`."""

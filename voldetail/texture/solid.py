@@ -15,12 +15,10 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from voldetail.noise.wavelet_spectrum import variance
-
-Floats = NDArray[np.float64]
+from voldetail.types import Floats
 
 FINEST_SHARE = -1
 """The octave, relative to the band's own, of the first number in the two tables below."""

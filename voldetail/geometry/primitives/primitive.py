@@ -14,8 +14,7 @@ from voldetail.geometry.meshes import Mesh
 from voldetail.geometry.signed_distance import Distance
 from voldetail.setup.proxy import ProxySetup
 from voldetail.setup.shapes import SHAPES
-
-Floats = NDArray[np.float64]
+from voldetail.types import Floats
 
 
 @dataclass(frozen=True, eq=False)
