@@ -12,8 +12,9 @@ from typing import Any, Protocol
 
 import cma
 import numpy as np
+from numpy.typing import NDArray
 
-from voldetail.types import Vector
+Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
