@@ -6,6 +6,8 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -78,6 +80,19 @@ def set_threads(count: int) -> None:
     """Limit the worker threads of Dr.Jit (0 = all cores)."""
     mitsuba()
     import_module("drjit").set_thread_count(count)
+
+
+@contextmanager
+def helpers_for_files() -> Iterator[None]:
+    """Give Dr.Jit two worker threads at least while Mitsuba reads or writes OpenEXR, which with one waits for itself for ever."""
+    mitsuba()
+    drjit = import_module("drjit")
+    count = drjit.thread_count()
+    drjit.set_thread_count(max(count, 2))
+    try:
+        yield
+    finally:
+        drjit.set_thread_count(count)
 
 
 @cache

@@ -145,3 +145,24 @@ def test_an_llvm_that_was_loaded_before_us_is_refused_too(first: str) -> None:
     done = run(f"import {first}\n" + "import os; os.environ.pop('DRJIT_LIBLLVM_PATH', None)\n" + RENDER)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(("result", "refused Dr.Jit was imported before voldetail"))
+
+
+THREADS = """
+from pathlib import Path
+import numpy as np
+import voldetail.backend
+from voldetail.image import save_exr
+from voldetail.render.environment import environment_emitter
+voldetail.backend.set_threads(1)
+import drjit as dr
+path = Path(r"{path}")
+save_exr(path, np.ones((32, 64, 3), np.float32))
+environment_emitter(path)
+print("threads", dr.thread_count())
+"""
+
+
+def test_one_thread_reads_an_environment_map_and_waits_for_nobody(tmp_path: Path) -> None:
+    """Mitsuba's reader of OpenEXR never came back where Dr.Jit had one thread."""
+    done = run(THREADS.replace("{path}", str(tmp_path / "sky.exr")))
+    assert (done.returncode, done.stdout) == (0, "threads 1\n"), done.stderr

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from voldetail.backend import mitsuba
+from voldetail.backend import helpers_for_files, mitsuba
 from voldetail.errors import InputError
 from voldetail.files import readable
 
@@ -32,7 +32,9 @@ def environment_emitter(path: Path) -> Any:
     mi = mitsuba()
     checked_environment(path)
     try:
-        bitmap = mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
+        with helpers_for_files():
+            stored = mi.Bitmap(str(path))
+        bitmap = stored.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
     except RuntimeError as error:
         raise InputError(f"The environment map {path.name} cannot be read: it is damaged or not an image.") from error
     values = np.asarray(bitmap)
