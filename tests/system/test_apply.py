@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tests.system.scenes import detail
 from voldetail.apply import relight, render
+from voldetail.backend import mitsuba
 from voldetail.detail import Detail
 from voldetail.errors import InputError
 from voldetail.image import save_exr
