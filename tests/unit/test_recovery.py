@@ -6,7 +6,7 @@ import pytest
 from tests.unit.relief_examples import apart, distant, lambert, photo_of, smooth_noise, view_of_size
 from voldetail.detail.relief_maps import normals_of
 from voldetail.errors import InputError
-from voldetail.image import Photo, luminance, with_mask
+from voldetail.image import Photo, with_mask
 from voldetail.recover.place import box_of, lamp_about
 from voldetail.recover.recovery import recover
 from voldetail.recover.reflectance import surface_of
@@ -135,7 +135,7 @@ class TestSurface:
         paint = np.where(smooth_noise(SHAPE, 14.0, 9) > 0, 0.6, 0.3)[..., None] * np.array([1.0, 0.9, 0.7])
         pixels = ((0.25 * shading.ambient + 0.75 * shading.diffuse)[..., None] * paint).astype(np.float32)
         ones = np.ones(SHAPE, np.float32)
-        found = surface_of(pixels, ones, np.full(SHAPE, float(luminance(pixels).mean()), np.float32), shading)
+        found = surface_of(pixels, ones, None, shading)
         ratio = found.albedo / paint
         assert ratio.std() / ratio.mean() < 0.12
         assert found.reflectance.specular <= 0.06
@@ -146,14 +146,13 @@ class TestSurface:
         view = view_of_size(SHAPE)
         shading = shading_of(height * np.float32(view.pixel), Lamp(direction_of(30, 60)), view)
         matt = 0.1 * shading.ambient + 0.3 * shading.diffuse
-        level = np.full(SHAPE, float(matt.mean()), np.float32)
         ones = np.ones(SHAPE, np.float32)
 
         def grey(light: np.ndarray) -> np.ndarray:
             return np.repeat(light[..., None], 3, axis=2).astype(np.float32)
 
-        dull = surface_of(grey(matt), ones, level, shading)
-        shiny = surface_of(grey(matt + 0.03 * shading.specular[1]), ones, level, shading)
+        dull = surface_of(grey(matt), ones, None, shading)
+        shiny = surface_of(grey(matt + 0.03 * shading.specular[1]), ones, None, shading)
         assert dull.reflectance.specular == 0
         assert dull.roughness == 0.9
         assert shiny.reflectance.specular == pytest.approx(0.03, abs=0.015)

@@ -62,18 +62,21 @@ class TestEvidence:
     def test_shading_is_a_half(self) -> None:
         light = lambert(0.5 * smooth_noise((256, 256), 8.0, 5), 30, 45)
         found = evidence(light / light.mean() - 1, np.ones((256, 256), np.float32), distant((256, 256), 30, 45))
+        assert found.ratio is not None
         assert abs(found.ratio - 0.5) < 0.08
         assert found.confidence > 0.8
         assert found.notes == ()
 
     def test_paint_is_none(self) -> None:
         found = evidence(0.2 * smooth_noise((256, 256), 8.0, 6), np.ones((256, 256), np.float32), distant((256, 256), 30, 45))
+        assert found.ratio is not None
         assert abs(found.ratio) < 0.06
         assert "Little relief" in found.notes[0]
 
     def test_a_light_from_elsewhere_contradicts(self) -> None:
         light = lambert(0.5 * smooth_noise((256, 256), 8.0, 5), 120, 45)
         found = evidence(light / light.mean() - 1, np.ones((256, 256), np.float32), distant((256, 256), 30, 45))
+        assert found.ratio is not None
         assert found.ratio < -0.3
         assert found.confidence == 0
         assert "contradicts" in found.notes[0]

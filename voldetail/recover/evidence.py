@@ -35,9 +35,10 @@ LEAST_SIDEWAYS = 0.1
 
 @dataclass(frozen=True)
 class Evidence:
-    """ratio: e. confidence: 0 to 1. notes: sentences for the user, none where nothing is to be said."""
+    """ratio: e, None where the light has no side. confidence: 0 to 1. notes: sentences for the user, none where nothing is to be
+    said."""
 
-    ratio: float
+    ratio: float | None
     confidence: float
     notes: tuple[str, ...] = ()
 
@@ -52,7 +53,7 @@ def evidence(detail: NDArray[np.float32], weight: NDArray[np.float32], light: Li
     across = np.hypot(lx, ly)
     sided = read & (across > LEAST_SIDEWAYS)
     if sided.sum() < 64:
-        return Evidence(0.0, 0.25, ("The light comes from the front: relief shows by its steepness alone, and not which way.",))
+        return Evidence(None, 0.25, ("The light comes from the front: relief shows by its steepness alone, and not which way.",))
     ax, ay = lx[sided] / across[sided], ly[sided] / across[sided]
     gx, gy = right[sided], -down[sided]
     along, beside = float(np.mean((ax * gx + ay * gy) ** 2)), float(np.mean((ay * gx - ax * gy) ** 2))

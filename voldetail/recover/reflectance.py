@@ -41,12 +41,6 @@ DARK = 0.35
 FILL = 0.02
 """Standard deviation of the filling mean over the shorter side."""
 
-PAINT_SLOW = 16.0
-"""Pixels: deviation of the local mean that the network's log albedo is over (recover.network.SLOW)."""
-
-PAINT_SHARE = 0.5
-"""Of the network's log albedo in the mean: a half."""
-
 MATT = 0.9
 """Roughness where no highlight was seen."""
 
@@ -63,34 +57,32 @@ class Surface:
 def surface_of(
     pixels: NDArray[np.float32],
     weight: NDArray[np.float32],
-    slow: NDArray[np.float32],
+    slow: NDArray[np.float32] | None,
     shading: Shading,
-    paint: NDArray[np.float32] | None = None,
 ) -> Surface:
     """Return the reflectance and albedo of ``pixels`` (H, W, 3) whose relief has ``shading``.
 
-    weight (H, W): which pixels count. slow (H, W): the photo's slow mean luminance. What is slow in it belongs to the lamp and
-    its fall-off: the relief's shading is brought to it first, so that it is not taken for paint. paint (H, W): log albedo over
-    its local mean as the network sees it; the geometric mean with the quotient is kept, since the one is soft where the other has
-    what is left of shadows.
-    """
+    weight (H, W): which pixels count. slow (H, W): under a near lamp the photo's slow mean luminance, None under a distant one. A
+    near lamp's true fall-off, its lobe and the lens's vignetting are not known: what is slow in the photo is taken for theirs,
+    and the relief's own shading brought to the same. Under a distant light it is paint. paint (H, W): log albedo over its local
+    mean as the network sees it; the geometric mean with the quotient is kept, since the one is soft where the other has what is
+    left of shadows."""
     read = weight > 0
     if not read.any():
         read = np.ones_like(read)
     light = luminance(pixels)
-    level = float(slow[read].mean())
-    # The lamp's fall-off and stains, divided out of the photo; A and D have the lamp's own in them already.
-    even = np.asarray(light / slow * level, np.float32)
-    mean = np.float32(shading.diffuse[read].mean())
-    own = np.asarray(shading.diffuse / np.maximum(_slow(shading.diffuse), 1e-3) * mean, np.float32)
+    level = float(light[read].mean())
+    fall = np.float32(1.0) if slow is None else np.asarray(slow / float(slow[read].mean()), np.float32)
+    even = np.asarray(light / fall, np.float32)
+    own = shading.diffuse
+    if slow is not None:
+        own = np.asarray(own / np.maximum(_slow(own), 1e-3) * np.float32(own[read].mean()), np.float32)
     ambient, diffuse, specular, lobe = _coefficients(even, own, shading, read, level)
     shade = np.asarray(ambient * shading.ambient + diffuse * own, np.float32)
     gloss = np.zeros_like(light) if lobe < 0 else specular * shading.specular[lobe]
-    flat = pixels * (level / slow)[..., None] - gloss[..., None]
-    found = np.maximum(flat, 0.0) / np.maximum(shade, 1e-4)[..., None]
-    found = _filled(np.asarray(found, np.float32), shade, read)
-    if paint is not None:
-        found = _with_paint(found, paint, read)
+    flat = pixels / np.atleast_1d(fall)[..., None] - gloss[..., None]
+    quotient = np.maximum(flat, 0.0) / np.maximum(shade, 1e-4)[..., None]
+    found = _filled(np.asarray(quotient, np.float32), shade, read)
     # The map's factor has mean 1; the coefficients take what it had over that.
     gain = max(float(luminance(found)[read].mean()), 1e-6)
     brightest = float(np.percentile(found[read] / gain, 99.8))
@@ -101,14 +93,6 @@ def surface_of(
         ambient=min(ambient * gain, 1.0), diffuse=base, specular=specular, shininess=exponent, tint=(1.0, 1.0, 1.0)
     )
     return Surface(reflectance, albedo.astype(np.float32), MATT if specular == 0 else math.sqrt(2.0 / (exponent + 2.0)))
-
-
-def _with_paint(albedo: NDArray[np.float32], paint: NDArray[np.float32], read: NDArray[np.bool_]) -> NDArray[np.float32]:
-    """Return ``albedo`` (H, W, 3) with its luminance the geometric mean of its own and the painted one, its hue its own."""
-    own = np.log(np.maximum(luminance(albedo), 1e-4))
-    slow = gaussian_filter(np.where(read, own, float(own[read].mean())), PAINT_SLOW, mode="reflect")
-    gain = np.exp(np.clip(PAINT_SHARE * (paint - (own - slow)), -2.0, 2.0))
-    return np.asarray(albedo * gain[..., None], np.float32)
 
 
 def _slow(values: NDArray[np.float32]) -> NDArray[np.float32]:
