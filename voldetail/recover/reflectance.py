@@ -64,9 +64,8 @@ def surface_of(
 
     weight (H, W): which pixels count. slow (H, W): under a near lamp the photo's slow mean luminance, None under a distant one. A
     near lamp's true fall-off, its lobe and the lens's vignetting are not known: what is slow in the photo is taken for theirs,
-    and the relief's own shading brought to the same. Under a distant light it is paint. paint (H, W): log albedo over its local
-    mean as the network sees it; the geometric mean with the quotient is kept, since the one is soft where the other has what is
-    left of shadows."""
+    and the relief's own shading brought to the same. Under a distant light it is paint.
+    """
     read = weight > 0
     if not read.any():
         read = np.ones_like(read)
