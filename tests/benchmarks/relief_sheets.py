@@ -2,7 +2,8 @@
 
 Run with:  python -m tests.benchmarks.relief_sheets -o results/relief [--only NAME ...]
 A row each: the photo, its maps under its own light, height, normals, and light from the right, above, the left and below. Those
-of free licences (CC0, CC-BY, MIT) are kept."""
+of free licences (CC0, CC-BY, MIT) are kept.
+"""
 
 from __future__ import annotations
 

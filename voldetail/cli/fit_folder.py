@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from voldetail.cli.outputs import check_folder, make_folder, remove
 from voldetail.detail import save_detail
+from voldetail.detail.relief_maps import RELIEF_FILES
 from voldetail.errors import InputError
 from voldetail.files import write_text
 from voldetail.setup.file import setup_to_toml
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
     from voldetail.results import FitResult
 
 DETAIL, SETUP, STATE, PREVIEW, FIT = "detail.json", "setup.toml", "state.json", "preview.png", "fit.png"
+RELIEF = "relief"
+"""The folder of the photo's own relief."""
+
 RESULTS = (DETAIL, FIT, "report.html", "sheet.png")
 PREVIEW_SECONDS = 2.0  # between two previews: writing one takes some 10 ms
 
@@ -61,6 +65,7 @@ class FitFolder:
         make_folder(self.path)
         # Results of another fit beside the new setup would be taken for its own.
         stale = [] if keep else [self.path / name for name in (*RESULTS, STATE, PREVIEW)]
+        stale += [] if keep else [self.path / RELIEF / name for name in RELIEF_FILES]
         remove(stale + sorted(self.path.glob(".voldetail-*")))  # the last: what a killed process was writing
         write_text(self.path / SETUP, setup_to_toml(self.setup))
 

@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 HEIGHT, NORMAL, ALBEDO, ROUGHNESS = "height.exr", "normal.png", "albedo.png", "roughness.png"
 """File names beside `relief.json`."""
 
+RELIEF_FILES = ("relief.json", HEIGHT, NORMAL, ALBEDO, ROUGHNESS)
+"""All files of a relief."""
+
 
 def normals_of(height: NDArray[np.float32], texels_per_unit: float, *, periodic: bool = False) -> NDArray[np.float32]:
     """Return unit normals (H, W, 3), x right, y up, z to the viewer, of heights (H, W) in scene units.

@@ -51,6 +51,10 @@ class Setup(Record):
         description="How the surface's colour is made: by example, with height, by the cell, none, or whichever is nearest.",
     )
     fit: FitSettings = Field(default_factory=FitSettings, description="How the search is done.")
+    relief: bool = Field(
+        default=True,
+        description="Whether the photo's own relief is kept beside the detail; of a plane that faces the camera.",
+    )
     seed: int = Field(default=0, ge=0, le=LARGEST_SEED, description="The root of every random number.")
     output: Path | None = Field(default=None, description="The folder for results; null: one named by the photo.")
 

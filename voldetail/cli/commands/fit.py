@@ -10,7 +10,8 @@ import typer
 
 from voldetail.cli.console import Json, explain, remarks, result
 from voldetail.cli.console import output as results
-from voldetail.cli.fit_folder import DETAIL, FIT, FitFolder
+from voldetail.cli.fit_folder import DETAIL, FIT, RELIEF, FitFolder
+from voldetail.cli.fit_relief import keep_relief
 from voldetail.cli.fit_setup import implied, output_folder, proxy_of, read_setup, rotation_of, zone_of
 from voldetail.cli.settings import given, setting
 from voldetail.cli.threads import use_threads
@@ -50,6 +51,7 @@ def fit(
     output: Annotated[Word, setting("output", "--output", "-o", panel=WHERE)] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier fit.", rich_help_panel=WHERE)] = False,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with an interrupted fit.", rich_help_panel=WHERE)] = False,
+    relief: Annotated[bool | None, setting("relief", "--relief/--no-relief", panel=WHERE)] = None,
     amplitude: Annotated[float | None, setting("amplitude", panel=SEARCH)] = None,
     domain: Annotated[Word, setting("domain", panel=SEARCH, words="solid or surface")] = None,
     specular: Annotated[bool | None, setting("fit.specular", "--specular/--no-specular", panel=SEARCH)] = None,
@@ -66,8 +68,9 @@ def fit(
 ) -> None:
     """Fit relief to one photo.
 
-    Leaves a folder with detail.json (the relief), report.html, sheet.png, fit.png, setup.toml (all settings)
-    and state.json (for --resume). Ctrl-C ends the search with the best so far.
+    Leaves a folder with detail.json (the relief), report.html, sheet.png, fit.png, setup.toml (all settings),
+    state.json (for --resume) and relief (the photo's own relief, see voldetail relief). Ctrl-C ends the search with the
+    best so far.
     """
     setup = read_setup(photo, implied(list(given(fit, locals()))), override or [])
     place = FitFolder(output_folder(setup), setup)
@@ -103,6 +106,10 @@ def run(place: FitFolder, *, resume: bool) -> None:
             view.step("making an even picture of the photo")
 
         def on_target(target: Target) -> None:
+            place.begin(keep=start is not None)
+            if place.setup.relief and start is None:
+                view.step("recovering the photo's own relief")
+                keep_relief(place, picture)
             uneven = "" if place.setup.photo.stationarize else warning(target.unevenness)
             if uneven:
                 console.print(uneven, markup=False, soft_wrap=True)
@@ -166,7 +173,10 @@ def _tell(folder: Path, fitted: FitResult) -> None:
         (PAGE_NAME, "the report: open it in a browser"), (SHEET_NAME, "the same on one picture"),
         (DETAIL, "the detail: use it with voldetail render, relight and show"),
         (FIT, "the photo's zone as the detail makes it"),
+        (RELIEF, "the photo's own relief: use it as the detail"),
     ):  # fmt: skip
+        if name == RELIEF and not (folder / name).is_dir():
+            continue
         console.print(f"  {folder / name}  {what}", markup=False, soft_wrap=True)
     result(_record(folder, fitted))
 

@@ -151,12 +151,11 @@ def _tell(folder: Path, recovery: Recovery, report: bool, tile: bool) -> None:
 
 def _free_folder(folder: Path, force: bool) -> list[Path]:
     """Check the folder for the maps; return the files of an earlier run in it, which ``force`` lets go."""
-    from voldetail.detail.relief_maps import ALBEDO, HEIGHT, NORMAL, ROUGHNESS
+    from voldetail.detail.relief_maps import RELIEF_FILES
     from voldetail.report import PAGE_NAME, SHEET_NAME
 
     check_folder(folder)
-    maps = (RELIEF, HEIGHT, NORMAL, ALBEDO, ROUGHNESS)
-    names = (*maps, *(f"{TILE}/{name}" for name in maps), PAGE_NAME, SHEET_NAME)
+    names = (*RELIEF_FILES, *(f"{TILE}/{name}" for name in RELIEF_FILES), PAGE_NAME, SHEET_NAME)
     earlier = [folder / name for name in names if (folder / name).exists()]
     if earlier and not force:
         raise InputError(f"{folder} holds {earlier[0].name} already; give --force to replace it, or another folder.")
