@@ -23,10 +23,12 @@ from voldetail.detail import load_detail
 from voldetail.fit.state_file import load_state
 from voldetail.fit.target import load_photo_of
 from voldetail.image import load_photo
+from voldetail.image.load import load_samples
+from voldetail.recover.files import load_any
 from voldetail.results import Gallery
 from voldetail.setup.file import load_setup
 
-RESULTS = ["detail.json", "fit.png", "report.html", "setup.toml", "sheet.png", "state.json"]
+RESULTS = ["detail.json", "fit.png", "relief", "report.html", "setup.toml", "sheet.png", "state.json"]
 SMALL = ["skimage:gravel", "--light", "70,50", "--zone", "160,160,96,96", "--resolution", "64"]
 
 CHILD = """
@@ -83,7 +85,11 @@ def check_whole(folder: Path) -> None:
     for path in folder.iterdir():
         if path.name.startswith("."):
             continue  # what a killed process was writing; no reader looks at it
-        if path.suffix == ".json":
+        if path.is_dir():
+            check_whole(path)
+        elif path.suffix == ".exr":
+            load_samples(path, "map")
+        elif path.suffix == ".json":
             json.loads(path.read_text())
         elif path.suffix == ".toml":
             load_setup(path)
@@ -101,6 +107,7 @@ def test_a_fit_from_photo_to_folder(tmp_path: Path, capsys: pytest.CaptureFixtur
     shown = capsys.readouterr()
     assert sorted(p.name for p in out.iterdir()) == RESULTS
     check_whole(out)
+    assert load_any(out / "relief").name == "gravel"
     assert "M = " in shown.out
     assert str(out / "report.html") in shown.out
     assert "24 pictures" in shown.err

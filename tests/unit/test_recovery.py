@@ -25,7 +25,7 @@ def made(azimuth: float = 30.0) -> tuple[Photo, np.ndarray]:
     return photo_of(lambert(height, azimuth, 45)), normals_of(height, 1.0)
 
 
-@pytest.mark.parametrize("method", ["linear"])
+@pytest.mark.parametrize("method", ["linear", "network"])
 def test_normals_are_nearer_than_flat(method: Method) -> None:
     photo, true = made()
     flat = np.zeros_like(true)

@@ -27,7 +27,7 @@ def recover(
     zone: tuple[int, int, int, int] | None = None,
     size: int | None = 1024,
     encoding: Encoding = "auto",
-    method: Method = "linear",
+    method: Method = "network",
     seed: int = 0,
 ) -> Recovery:
     """Return height, normals, albedo and roughness of every pixel of a photo of something flat, seen head-on.

@@ -66,7 +66,7 @@ class FitFolder:
         # Results of another fit beside the new setup would be taken for its own.
         stale = [] if keep else [self.path / name for name in (*RESULTS, STATE, PREVIEW)]
         stale += [] if keep else [self.path / RELIEF / name for name in RELIEF_FILES]
-        remove(stale + sorted(self.path.glob(".voldetail-*")))  # the last: what a killed process was writing
+        remove(stale + sorted(self.path.rglob(".voldetail-*")))  # the last: what a killed process was writing
         write_text(self.path / SETUP, setup_to_toml(self.setup))
 
     def save_state(self, state: State, photo_sha256: str) -> None:

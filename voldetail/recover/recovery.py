@@ -102,7 +102,7 @@ def recover(
     *,
     zone: Zone | None = None,
     size: int | None = DEFAULT_SIZE,
-    method: Method = "linear",
+    method: Method = "network",
     name: str = "relief",
     seed: int = 0,
     on_step: Callable[[str], None] = lambda what: None,

@@ -106,10 +106,8 @@ def run(place: FitFolder, *, resume: bool) -> None:
             view.step("making an even picture of the photo")
 
         def on_target(target: Target) -> None:
-            place.begin(keep=start is not None)
             if place.setup.relief and start is None:
-                view.step("recovering the photo's own relief")
-                keep_relief(place, picture)
+                keep_relief(place, picture, view.step)
             uneven = "" if place.setup.photo.stationarize else warning(target.unevenness)
             if uneven:
                 console.print(uneven, markup=False, soft_wrap=True)

@@ -43,7 +43,7 @@ def relief(
     tile: Annotated[int | None, typer.Option(help="Make a tile of so many pixels a side as well.", rich_help_panel=HOW)] = None,
     method: Annotated[
         str, typer.Option(help="network, or linear: one closed step without anything learnt.", rich_help_panel=HOW)
-    ] = "linear",
+    ] = "network",
     mesh: Annotated[str, typer.Option(help="The shape of the report's last picture.", rich_help_panel=HOW)] = "cylinder",
     report: Annotated[
         bool, typer.Option("--report/--no-report", help="Whether report.html and sheet.png are made.", rich_help_panel=HOW)
