@@ -24,7 +24,7 @@ PROMISED = {
     "compare": ("flat.png",),
     "show": (),
     "python": ("cylinder.png",),
-    "relief": ("own/relief.json", "own/report.html", "own/turn/sheet.png", "own/sphere.png", "own/cylinder.png"),
+    "relief": ("own/relief.json", "own/report.html", "own/turn/sheet.png", "own/cylinder.png"),
 }  # fmt: skip
 
 FITTING = ("fit", "tiles", "volume")
