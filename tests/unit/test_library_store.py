@@ -42,8 +42,10 @@ def test_what_was_built_is_what_is_read(built: Path) -> None:
     assert np.array_equal(group.table.vectors, vectors)
     assert group.parameters(4242) == {"number": 4242.0, "share": 4242.5}
     whole = table(vectors)
-    assert np.array_equal(group.table.norms, whole.norms)
-    assert np.array_equal(np.concatenate(list(group.table.outlines.pieces()), axis=1), whole.outlines)  # type: ignore[union-attr]
+    # Products of other numbers of rows are rounded otherwise by some processors.
+    assert np.allclose(np.asarray(group.table.norms), whole.norms, rtol=1e-5)
+    outlines = np.concatenate(list(group.table.outlines.pieces()), axis=1)  # type: ignore[union-attr]
+    assert np.allclose(outlines, whole.outlines, rtol=1e-5)
     query = vectors[BLOCK + 50] + np.float32(0.01)
     assert nearest(group.table, query) == nearest(whole, query)
     other = library.groups["cellular grid"]
